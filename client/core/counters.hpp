@@ -1,0 +1,47 @@
+// What was done and what was skipped. Tests, `render --json`, the page's panel and benchmarks show these
+// same numbers.
+#pragma once
+
+#include <cstdint>
+
+namespace stipple {
+
+// Of one frame.
+struct FrameCounters {
+    std::uint64_t nodesKnown = 0;          // in the loaded part of the hierarchy, all clouds
+    std::uint64_t nodesVisited = 0;        // taken from the queue of the selection
+    std::uint64_t nodesOutsideFrustum = 0; // skipped, with everything below them
+    std::uint64_t nodesTooSmall = 0;       // skipped: projected size under the limit
+    std::uint64_t nodesOverBudget = 0;     // skipped: the point budget was used up
+    std::uint64_t nodesSelected = 0;       // wanted in the picture
+    std::uint64_t nodesWaiting = 0;        // wanted, not here yet
+    std::uint64_t nodesDrawn = 0;          // here and drawn
+    std::uint64_t pointsSelected = 0;      // points of selected nodes
+    std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
+    std::uint64_t chunksWaiting = 0;       // hierarchy chunks wanted, not here yet
+    std::uint64_t passesRun = 0;           // full-screen or geometry passes of the renderer
+    std::uint64_t passesSkipped = 0;       // passes a setting made unnecessary
+    bool complete = false;                 // everything the selection wants is drawn
+};
+
+// Since the session began.
+struct SessionCounters {
+    std::uint64_t framesDrawn = 0;
+    std::uint64_t framesSkipped = 0; // nothing moved and nothing arrived
+    std::uint64_t selectionsRun = 0;
+    std::uint64_t selectionsSkipped = 0;
+    std::uint64_t requests = 0;       // byte ranges asked for, after merging
+    std::uint64_t requestsMerged = 0; // wanted ranges that travelled with a neighbour
+    std::uint64_t requestsFailed = 0;
+    std::uint64_t requestsCancelled = 0;
+    std::uint64_t bytesRequested = 0;
+    std::uint64_t bytesReceived = 0;
+    std::uint64_t chunksLoaded = 0;
+    std::uint64_t nodesDecoded = 0; // decodings; a node refined by a stratum counts again
+    std::uint64_t pointsDecoded = 0;
+    std::uint64_t nodesEvicted = 0;
+    std::uint64_t cacheBytes = 0; // now
+    std::uint64_t cacheBytesPeak = 0;
+};
+
+} // namespace stipple

