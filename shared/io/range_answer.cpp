@@ -1,0 +1,156 @@
+#include "shared/io/range_answer.hpp"
+
+#include "shared/base/text.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+namespace stipple {
+namespace {
+
+constexpr const char* reloadAdvice = "open it again";
+constexpr const char* rangeAdvice =
+    "serve the file with `stipple serve`, or with any server that answers byte ranges";
+
+// RFC 9110 §14.4: "bytes first-last/size" or "bytes */size"; a size of "*" is unknown.
+struct ContentRange {
+    bool satisfied = false;
+    std::uint64_t first = 0, last = 0;
+    std::optional<std::uint64_t> sizeBytes;
+};
+
+bool takeNumber(std::string_view& text, std::uint64_t& value) {
+    auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc{})
+        return false;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    return true;
+}
+
+bool take(std::string_view& text, std::string_view part) {
+    if (!text.starts_with(part))
+        return false;
+    text.remove_prefix(part.size());
+    return true;
+}
+
+std::optional<ContentRange> parseContentRange(std::string_view text) {
+    ContentRange range;
+    if (!take(text, "bytes "))
+        return std::nullopt;
+    if (!take(text, "*")) {
+        range.satisfied = true;
+        if (!takeNumber(text, range.first) || !take(text, "-") || !takeNumber(text, range.last))
+            return std::nullopt;
+    }
+    if (!take(text, "/"))
+        return std::nullopt;
+    if (!take(text, "*")) {
+        std::uint64_t size = 0;
+        if (!takeNumber(text, size))
+            return std::nullopt;
+        range.sizeBytes = size;
+    }
+    bool inOrder = !range.satisfied ||
+                   (range.first <= range.last && (!range.sizeBytes || range.last < *range.sizeBytes));
+    return text.empty() && inOrder ? std::optional(range) : std::nullopt;
+}
+
+Error changedError(const std::string& where) {
+    return {ErrorCode::changed, "the file was replaced while it was being read", where, reloadAdvice};
+}
+
+// A validator that only one side has says nothing.
+bool differs(const std::string& pinned, const std::string& now) {
+    return !pinned.empty() && !now.empty() && pinned != now;
+}
+
+Status checkVersion(const RangeAnswer& answer, std::optional<std::uint64_t> sizeBytes, FileVersion& version,
+                    const std::string& where) {
+    if (version.pinned) {
+        bool bySize = version.sizeBytes != 0 && sizeBytes && *sizeBytes != version.sizeBytes;
+        bool byDate = version.etag.empty() && differs(version.lastModified, answer.lastModified);
+        if (bySize || byDate || differs(version.etag, answer.etag))
+            return changedError(where);
+    } else {
+        version = {answer.etag, answer.lastModified, sizeBytes.value_or(0), true};
+    }
+    return {};
+}
+
+Result<std::uint64_t> judgePart(ByteRange asked, const RangeAnswer& answer, FileVersion& version,
+                                const std::string& where) {
+    std::optional<ContentRange> part = parseContentRange(answer.contentRange);
+    if (!part || !part->satisfied) {
+        std::string what = answer.contentRange.empty()
+                               ? "the server sent a part of the file without saying which"
+                               : cat("the server's Content-Range \"", answer.contentRange, "\" is no range");
+        return Error{ErrorCode::networkFailed, what, where,
+                     "from another host, it must expose the header: Access-Control-Expose-Headers: "
+                     "Content-Range, ETag"};
+    }
+    STIPPLE_CHECK(checkVersion(answer, part->sizeBytes, version, where));
+    // A part may end early only at the end of the file.
+    std::uint64_t fileEnd = part->sizeBytes.value_or(asked.end());
+    if (part->first != asked.offset || part->last + 1 != std::min(asked.end(), fileEnd))
+        return Error{ErrorCode::networkFailed,
+                     cat("asked for bytes ", asked.offset, " to ", asked.end() - 1, ", the server sent \"",
+                         answer.contentRange, "\""),
+                     where, rangeAdvice};
+    return part->last - part->first + 1;
+}
+
+Result<std::uint64_t> judgeWhole(ByteRange asked, const RangeAnswer& answer, FileVersion& version,
+                                 const std::string& where) {
+    if (version.pinned)
+        STIPPLE_CHECK(checkVersion(answer, answer.contentLength, version, where));
+    if (asked.offset == 0 && answer.contentLength && *answer.contentLength <= asked.size) {
+        STIPPLE_CHECK(checkVersion(answer, answer.contentLength, version, where));
+        return *answer.contentLength;
+    }
+    return Error{ErrorCode::unsupported, "the server ignores Range and sends the whole file", where,
+                 rangeAdvice};
+}
+
+} // namespace
+
+std::string rangeField(ByteRange range) {
+    return cat("bytes=", range.offset, "-", range.end() - 1);
+}
+
+Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answer, FileVersion& version,
+                                       const std::string& where) {
+    switch (answer.status) {
+    case 206:
+        return judgePart(asked, answer, version, where);
+    case 200:
+        return judgeWhole(asked, answer, version, where);
+    case 404:
+    case 410:
+        if (version.pinned)
+            return Error{ErrorCode::changed, "the file was removed while it was being read", where,
+                         reloadAdvice};
+        return Error{ErrorCode::notFound, "there is no such file on the server", where, "check the address"};
+    case 412:
+        return changedError(where);
+    case 416: {
+        std::optional<ContentRange> range = parseContentRange(answer.contentRange);
+        if (range)
+            STIPPLE_CHECK(checkVersion(answer, range->sizeBytes, version, where));
+        return Error{ErrorCode::truncated,
+                     cat("the file ends before byte ", asked.offset,
+                         range && range->sizeBytes ? cat(", after ", *range->sizeBytes, " bytes") : ""),
+                     where, "copy or convert it again"};
+    }
+    case 401:
+    case 403:
+        return Error{ErrorCode::networkFailed, cat("the server refuses access (status ", answer.status, ")"),
+                     where, ""};
+    default:
+        return Error{ErrorCode::networkFailed, cat("the server answered with status ", answer.status), where,
+                     "try again later"};
+    }
+}
+
+} // namespace stipple
