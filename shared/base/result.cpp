@@ -22,6 +22,8 @@ const char* errorCodeName(ErrorCode code) {
         return "outOfRange";
     case ErrorCode::ioFailed:
         return "ioFailed";
+    case ErrorCode::writeFailed:
+        return "writeFailed";
     case ErrorCode::networkFailed:
         return "networkFailed";
     case ErrorCode::cancelled:

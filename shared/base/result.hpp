@@ -20,6 +20,7 @@ enum class ErrorCode {
     limitExceeded,   // a stated limit of bytes, items or time would be exceeded
     outOfRange,      // a value does not fit the type or grid it has to go to
     ioFailed,        // the operating system refused
+    writeFailed,     // an output can't be made or written
     networkFailed,   // the connection, or a status that is not an answer
     cancelled,       // the caller took the request back
 };

@@ -8,6 +8,8 @@ int exitCodeOf(const Error& error) {
     switch (error.code) {
     case ErrorCode::invalidArgument:
         return usageError;
+    case ErrorCode::writeFailed:
+        return outputError;
     case ErrorCode::networkFailed:
         return networkError;
     case ErrorCode::cancelled:

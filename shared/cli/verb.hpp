@@ -20,7 +20,7 @@ enum ExitCode : int {
     interrupted = 130,      // Ctrl-C
 };
 
-// The code that belongs to an error met while reading inputs.
+// The code that belongs to an error; what is not told apart by its code is the fault of an input.
 int exitCodeOf(const Error& error);
 
 // Prints "stipple VERB: SENTENCE" to standard error and returns exitCodeOf(error).
