@@ -1,0 +1,324 @@
+#include "client/headless/http_source.hpp"
+
+#include "client/headless/http_url.hpp"
+#include "shared/base/text.hpp"
+#include "shared/io/file_source.hpp"
+#include "shared/io/range_answer.hpp"
+
+#include <algorithm>
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <deque>
+#include <limits>
+#include <vector>
+
+namespace stipple {
+
+namespace {
+
+namespace net = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using Tcp = net::ip::tcp;
+using Failure = boost::system::error_code;
+using Clock = std::chrono::steady_clock;
+constexpr auto answered = net::as_tuple(net::use_awaitable);
+
+// What is left of a cancelled answer is read to its end if it is this little: cheaper than connecting anew.
+constexpr std::uint64_t drainBytes = 64 * 1024;
+constexpr std::size_t readBufferBytes = 16 * 1024;
+
+struct Job {
+    ByteSource::RequestId id = 0;
+    ByteRange range;
+    ByteSource::Completion done;
+    bool cancelled = false; // answered already; what still arrives for it is thrown away
+};
+using JobPtr = std::shared_ptr<Job>;
+
+struct Connection {
+    explicit Connection(net::io_context& context) : stream(context), wake(context) {}
+    beast::tcp_stream stream;
+    beast::flat_buffer buffer{readBufferBytes};
+    net::steady_timer wake; // expires never; cancelled to wake an idle connection
+    bool isOpen = false;
+    bool isIdle = false;
+};
+
+// How an attempt ended; `stale`: a kept-alive connection was closed before a byte of the answer came, so the
+// request (a GET) may be sent again on a new one (RFC 9112 §9.3.1).
+struct Attempt {
+    Result<Bytes> result;
+    bool stale = false;
+};
+
+std::string field(const http::fields& fields, http::field name) {
+    auto found = fields.find(name);
+    return found == fields.end() ? std::string() : std::string(found->value());
+}
+
+class HttpSource final : public ByteSource {
+  public:
+    HttpSource(HttpUrl url, std::string name, const HttpSourceOptions& options)
+        : url_(std::move(url)), name_(std::move(name)), options_(options) {}
+
+    ~HttpSource() override {
+        *alive_ = false;
+        closing_ = true;
+        std::vector<Completion> open;
+        for (auto& [done, result] : ready_)
+            open.push_back(std::move(done));
+        for (auto* jobs : {&queue_, &active_})
+            for (JobPtr& job : *jobs)
+                if (!job->cancelled)
+                    open.push_back(std::move(job->done));
+        for (Completion& done : open)
+            done(cancelledError());
+    }
+
+    RequestId read(ByteRange range, Completion done) override {
+        RequestId id = ++nextId_;
+        if (closing_)
+            done(cancelledError());
+        else if (range.size == 0)
+            done(Bytes{});
+        else if (range.offset > std::numeric_limits<std::uint64_t>::max() - range.size)
+            done(Error{ErrorCode::invalidArgument, "the range ends beyond 2^64", name_, ""});
+        else
+            enqueue(std::make_shared<Job>(Job{id, range, std::move(done)}));
+        return id;
+    }
+
+    void cancel(RequestId id) override {
+        auto hasId = [id](const JobPtr& job) { return job->id == id && !job->cancelled; };
+        if (auto queued = std::find_if(queue_.begin(), queue_.end(), hasId); queued != queue_.end()) {
+            ready_.emplace_back(std::move((*queued)->done), cancelledError());
+            queue_.erase(queued);
+        } else if (auto active = std::find_if(active_.begin(), active_.end(), hasId);
+                   active != active_.end()) {
+            ready_.emplace_back(std::move((*active)->done), cancelledError());
+            (*active)->cancelled = true;
+        }
+    }
+
+    int pump(std::chrono::milliseconds wait) override {
+        auto until = Clock::now() + wait;
+        context_.restart();
+        context_.poll();
+        while (ready_.empty() && hasWork() && Clock::now() < until)
+            context_.run_one_until(until);
+        return deliver();
+    }
+
+    std::uint64_t sizeBytes() const override { return version_.sizeBytes; }
+    std::string name() const override { return name_; }
+
+  private:
+    bool hasWork() const { return !queue_.empty() || !active_.empty(); }
+    Error cancelledError() const { return {ErrorCode::cancelled, "the request was taken back", name_, ""}; }
+
+    void enqueue(JobPtr job) {
+        queue_.push_back(std::move(job));
+        for (auto& connection : connections_)
+            if (connection->isIdle) {
+                connection->isIdle = false;
+                connection->wake.cancel();
+                return;
+            }
+        if (static_cast<int>(connections_.size()) < std::max(options_.connections, 1)) {
+            connections_.push_back(std::make_unique<Connection>(context_));
+            net::co_spawn(context_, serveQueue(*connections_.back()), net::detached);
+        }
+    }
+
+    // Answers what is ready now, not what completions ask for meanwhile. A completion may destroy the source.
+    int deliver() {
+        auto alive = alive_;
+        int delivered = 0;
+        for (std::size_t left = ready_.size(); left > 0 && *alive && !ready_.empty(); --left, ++delivered) {
+            auto [done, result] = std::move(ready_.front());
+            ready_.pop_front();
+            done(std::move(result));
+        }
+        return delivered;
+    }
+
+    net::awaitable<void> serveQueue(Connection& connection) {
+        for (;;) {
+            while (queue_.empty()) {
+                connection.isIdle = true;
+                connection.wake.expires_at(Clock::time_point::max());
+                co_await connection.wake.async_wait(answered);
+                connection.isIdle = false;
+            }
+            JobPtr job = queue_.front();
+            queue_.pop_front();
+            active_.push_back(job);
+            bool reused = connection.isOpen;
+            Attempt attempt = co_await fetch(connection, *job);
+            if (attempt.stale && reused && !job->cancelled)
+                attempt = co_await fetch(connection, *job);
+            active_.erase(std::find(active_.begin(), active_.end(), job));
+            if (!job->cancelled)
+                ready_.emplace_back(std::move(job->done), std::move(attempt.result));
+        }
+    }
+
+    net::awaitable<Attempt> fetch(Connection& connection, const Job& job) {
+        if (!connection.isOpen) {
+            Status connected = co_await connect(connection);
+            if (!connected)
+                co_return Attempt{connected.error()};
+        }
+        // Whatever goes wrong from here on, the connection is in an unknown state; only success keeps it.
+        connection.isOpen = false;
+        Attempt attempt = co_await exchange(connection, job);
+        if (!connection.isOpen)
+            closeNow(connection);
+        co_return attempt;
+    }
+
+    net::awaitable<Status> connect(Connection& connection) {
+        closeNow(connection);
+        if (endpoints_.empty()) {
+            Tcp::resolver resolver(context_);
+            auto [error, found] = co_await resolver.async_resolve(url_.host, url_.port, answered);
+            if (error)
+                co_return networkError(cat("the host can't be found: ", error.message()));
+            endpoints_ = found;
+        }
+        connection.stream.expires_after(options_.connectTimeout);
+        auto [error, endpoint] = co_await connection.stream.async_connect(endpoints_, answered);
+        if (error)
+            co_return networkError(cat("can't connect: ", error.message()),
+                                   "check the address, and that the server runs");
+        Failure ignored;
+        connection.stream.socket().set_option(Tcp::no_delay(true), ignored);
+        connection.isOpen = true;
+        co_return Status();
+    }
+
+    // Sends the request and reads its answer; sets `isOpen` if the connection can be used again.
+    net::awaitable<Attempt> exchange(Connection& connection, const Job& job) {
+        http::request<http::empty_body> request = makeRequest(job.range);
+        connection.stream.expires_after(options_.headerTimeout);
+        if (auto [error, sent] = co_await http::async_write(connection.stream, request, answered); error)
+            co_return Attempt{networkError(cat("the connection broke: ", error.message())), true};
+
+        http::response_parser<http::vector_body<std::uint8_t>> parser;
+        parser.body_limit(boost::none); // judged below, before any of it is stored
+        if (auto [error, got] =
+                co_await http::async_read_header(connection.stream, connection.buffer, parser, answered);
+            error)
+            co_return Attempt{readError(error), !parser.got_some() && error != beast::error::timeout};
+
+        auto expected = judgeRangeAnswer(job.range, summary(parser), version_, name_);
+        if (!expected)
+            co_return Attempt{expected.error()};
+        std::uint64_t bodyBytes = *expected;
+        if (auto coding = field(parser.get(), http::field::content_encoding);
+            !coding.empty() && coding != "identity")
+            co_return Attempt{networkError(cat("the server sent the part encoded as \"", coding, "\""),
+                                           "switch compression of .stipple files off")};
+        if (auto length = parser.content_length(); length && *length != bodyBytes)
+            co_return Attempt{
+                networkError(cat("the server announces ", *length, " bytes for a part of ", bodyBytes))};
+        parser.body_limit(bodyBytes);
+
+        while (!parser.is_done()) {
+            std::uint64_t left = bodyBytes - std::min<std::uint64_t>(bodyBytes, parser.get().body().size());
+            if (job.cancelled && left > drainBytes)
+                co_return Attempt{cancelledError()};
+            connection.stream.expires_after(options_.noProgressTimeout);
+            auto [error, got] =
+                co_await http::async_read_some(connection.stream, connection.buffer, parser, answered);
+            if (error)
+                co_return Attempt{readError(error)};
+        }
+        Bytes body = std::move(parser.get().body());
+        if (body.size() != bodyBytes)
+            co_return Attempt{
+                networkError(cat("the answer ended after ", body.size(), " of ", bodyBytes, " bytes"))};
+        connection.isOpen = parser.keep_alive();
+        co_return Attempt{std::move(body)};
+    }
+
+    http::request<http::empty_body> makeRequest(ByteRange range) const {
+        http::request<http::empty_body> request{http::verb::get, url_.target, 11};
+        request.set(http::field::host, url_.authority);
+        request.set(http::field::user_agent, "stipple");
+        request.set(http::field::accept_encoding, "identity");
+        request.set(http::field::range, rangeField(range));
+        if (version_.etag.starts_with('"')) // weak tags never match (RFC 9110 §13.1.1)
+            request.set(http::field::if_match, version_.etag);
+        return request;
+    }
+
+    template <class Parser>
+    static RangeAnswer summary(const Parser& parser) {
+        const auto& head = parser.get();
+        RangeAnswer answer;
+        answer.status = head.result_int();
+        answer.contentRange = field(head, http::field::content_range);
+        answer.etag = field(head, http::field::etag);
+        answer.lastModified = field(head, http::field::last_modified);
+        if (auto length = parser.content_length())
+            answer.contentLength = *length;
+        return answer;
+    }
+
+    static void closeNow(Connection& connection) {
+        Failure ignored;
+        connection.stream.socket().close(ignored);
+        connection.buffer.consume(connection.buffer.size());
+        connection.isOpen = false;
+    }
+
+    Error networkError(std::string what, std::string advice = "") const {
+        return {ErrorCode::networkFailed, std::move(what), name_, std::move(advice)};
+    }
+    Error readError(const Failure& error) const {
+        if (error == beast::error::timeout)
+            return networkError("the server stopped answering", "try again");
+        if (error == http::error::end_of_stream || error == http::error::partial_message)
+            return networkError("the server closed the connection in the middle of its answer", "try again");
+        return networkError(cat("the answer can't be read: ", error.message()));
+    }
+
+    // Declared first, destroyed last: it owns the coroutines, which refer to all that follows but do not
+    // touch it when they are destroyed.
+    net::io_context context_{1};
+    HttpUrl url_;
+    std::string name_;
+    HttpSourceOptions options_;
+    Tcp::resolver::results_type endpoints_;
+    FileVersion version_;
+    std::vector<std::unique_ptr<Connection>> connections_;
+    std::deque<JobPtr> queue_, active_;
+    std::deque<std::pair<Completion, Result<Bytes>>> ready_;
+    RequestId nextId_ = 0;
+    bool closing_ = false;
+    std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);
+};
+
+} // namespace
+
+Result<std::unique_ptr<ByteSource>> openHttpSource(const std::string& url, const HttpSourceOptions& options) {
+    STIPPLE_TRY(parts, parseHttpUrl(url));
+    return std::unique_ptr<ByteSource>(new HttpSource(std::move(parts), url, options));
+}
+
+Result<std::unique_ptr<ByteSource>> openSource(const std::string& pathOrUrl) {
+    return looksLikeUrl(pathOrUrl) ? openHttpSource(pathOrUrl) : openFileSource(pathOrUrl);
+}
+
+} // namespace stipple
