@@ -39,6 +39,9 @@ struct ViewTransform {
     double halfHeight = 1;         // orthographic: half the view's height, world units
     double aspect = 1;             // width / height
     double near = 0.1, far = 1000; // view distances, world units; 0 < near < far
+    // Where distances start. Perspective: the camera's position. Orthographic: that position moved along
+    // `forward` (which changes no pixel) so that all content lies in front.
+    Vec3d eye;
 };
 
 struct DrawNode {

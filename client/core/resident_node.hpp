@@ -10,12 +10,16 @@
 // so drawing stays exact however far one zooms into a coarse node:
 //
 //   low word: z_low << 20 | y_low << 10 | x_low, each positionShift bits
+//
+// A node has colour words (clouds with RGB), intensities (clouds whose main colour is intensity, or when the
+// style asks for it), both, or neither.
 #pragma once
 
+#include "shared/format/cloud_metadata.hpp"
+#include "shared/format/node_points.hpp"
 #include "shared/geometry/node_key.hpp"
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace stipple {
@@ -50,5 +54,21 @@ inline std::uint32_t packPositionWord1(std::uint32_t y, std::uint32_t z) {
 inline Vec3<std::uint32_t> unpackPosition(std::uint32_t word0, std::uint32_t word1) {
     return {word0 & 0x1FFFFFu, (word0 >> 21) | (((word1 >> 1) & 0x3FFu) << 11), word1 >> 11};
 }
+
+inline std::uint32_t packPositionLow(std::uint32_t xLow, std::uint32_t yLow, std::uint32_t zLow) {
+    return zLow << 20 | yLow << 10 | xLow;
+}
+
+// An id that no other ResidentNode of this process has. Any thread. Processes that decode for another one
+// (Web Workers) give no ids: who takes the node in sets it.
+std::uint64_t nextResidentNodeId();
+
+// Packs decoded points, with a new id. 16-bit colour channels keep their upper byte, 8-bit ones
+// (`colourIs8Bit`) are taken as they are, at most 255. `nodeBits` <= maxNodeBits.
+ResidentNode packNode(const NodeKey& key, int nodeBits, std::uint32_t totalPoints, const NodePicture& picture,
+                      PictureColour colour, bool colourIs8Bit);
+
+// In-node grid integers of point `index` < pointCount, exact.
+Vec3<std::uint32_t> positionOf(const ResidentNode& node, std::size_t index);
 
 } // namespace stipple
