@@ -1,0 +1,264 @@
+#include "client/core/json.hpp"
+
+#include "client/core/json_fields.hpp"
+
+namespace stipple {
+
+using nlohmann::json;
+
+namespace {
+
+template <class T, std::size_t N>
+using Names = json_fields::Names<T, N>;
+using json_fields::FieldReader;
+using json_fields::nameOf;
+
+constexpr Names<Projection, 2> projections{{
+    {"perspective", Projection::perspective},
+    {"orthographic", Projection::orthographic},
+}};
+constexpr Names<NamedView, 3> namedViews{{
+    {"top", NamedView::top},
+    {"front", NamedView::front},
+    {"iso", NamedView::iso},
+}};
+constexpr Names<ColourMode, 3> colourModes{{
+    {"rgb", ColourMode::rgb},
+    {"intensity", ColourMode::intensity},
+    {"elevation", ColourMode::elevation},
+}};
+constexpr Names<GradientName, 6> gradients{{
+    {"viridis", GradientName::viridis},
+    {"turbo", GradientName::turbo},
+    {"inferno", GradientName::inferno},
+    {"spectral", GradientName::spectral},
+    {"grey", GradientName::grey},
+    {"terrain", GradientName::terrain},
+}};
+constexpr Names<PointSizeMode, 2> sizeModes{{
+    {"fixed", PointSizeMode::fixed},
+    {"world", PointSizeMode::world},
+}};
+constexpr Names<PointShape, 2> shapes{{
+    {"square", PointShape::square},
+    {"circle", PointShape::circle},
+}};
+constexpr Names<CloudStage, 3> stages{{
+    {"opening", CloudStage::opening},
+    {"ready", CloudStage::ready},
+    {"failed", CloudStage::failed},
+}};
+
+constexpr double largestCoordinate = 1e150; // squares stay finite
+
+json vectorJson(const Vec3d& v) {
+    return json::array({v.x, v.y, v.z});
+}
+
+json rangeJson(const Range& range) {
+    return range.min == range.max ? json(nullptr) : json::array({range.min, range.max});
+}
+
+void readEdl(FieldReader& fields, EyeDomeLighting& edl) {
+    fields.flag("enabled", edl.enabled);
+    fields.number("neighbours", edl.neighbours, 4, 8);
+    if (edl.neighbours != 4 && edl.neighbours != 8)
+        fields.fail("neighbours", "must be 4 or 8");
+    fields.number("radiusPixels", edl.radiusPixels, 0, 100);
+    fields.number("strength", edl.strength, 0, 100);
+}
+
+} // namespace
+
+Result<json> parseJson(std::string_view text, const std::string& what) {
+    // The parser tells the position only by exceptions, which WebAssembly is built without.
+    json value = json::parse(text.begin(), text.end(), nullptr, false);
+    if (value.is_discarded())
+        return Error{ErrorCode::invalidArgument, "this is not valid JSON", what,
+                     "check quotes, commas and brackets"};
+    return value;
+}
+
+std::string jsonText(const json& value) {
+    return value.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+Result<Camera> detail::readCamera(const json& value, const Camera& base) {
+    Camera camera = base;
+    FieldReader fields(value, "camera");
+    fields.choice("projection", camera.projection, projections);
+    fields.vector("position", camera.position, largestCoordinate);
+    fields.vector("target", camera.target, largestCoordinate);
+    fields.vector("up", camera.up, largestCoordinate);
+    fields.number("fovYDegrees", camera.fovYDegrees, 0.001, 179);
+    fields.number("orthoHeight", camera.orthoHeight, 1e-150, largestCoordinate);
+    STIPPLE_CHECK(fields.finish());
+    return camera;
+}
+
+Result<Camera> cameraFromJson(std::string_view text, const Camera& base) {
+    STIPPLE_TRY(value, parseJson(text, "camera"));
+    return cameraFromJson(value, base);
+}
+
+Result<Style> detail::readStyle(const json& value, const Style& base) {
+    Style style = base;
+    FieldReader fields(value, "style");
+    fields.choice("colourMode", style.colourMode, colourModes);
+    fields.choice("gradient", style.gradient, gradients);
+    fields.range("intensityRange", style.intensityRange);
+    fields.range("elevationRange", style.elevationRange);
+    fields.choice("sizeMode", style.sizeMode, sizeModes);
+    fields.number("sizePixels", style.sizePixels, 0.01, 1000);
+    fields.number("sizeWorld", style.sizeWorld, 0, 1e15);
+    fields.number("minSizePixels", style.minSizePixels, 0.01, 1000);
+    fields.number("maxSizePixels", style.maxSizePixels, 0.01, 1000);
+    if (style.minSizePixels > style.maxSizePixels)
+        fields.fail("minSizePixels", "must not exceed maxSizePixels");
+    fields.choice("shape", style.shape, shapes);
+    fields.object("edl", [&](FieldReader& edl) { readEdl(edl, style.edl); });
+    fields.bytes("background", style.background);
+    STIPPLE_CHECK(fields.finish());
+    return style;
+}
+
+Result<Style> styleFromJson(std::string_view text, const Style& base) {
+    STIPPLE_TRY(value, parseJson(text, "style"));
+    return styleFromJson(value, base);
+}
+
+Result<SessionLimits> detail::readLimits(const json& value, const SessionLimits& base) {
+    constexpr std::uint64_t most = 1ull << 50; // JSON numbers are exact to 2^53
+    SessionLimits limits = base;
+    FieldReader fields(value, "limits");
+    fields.number("pointBudget", limits.pointBudget, 1, most);
+    fields.number("minNodePixels", limits.minNodePixels, 0, 1e6);
+    fields.number("cacheBytes", limits.cacheBytes, 1, most);
+    fields.number("requestsInFlight", limits.requestsInFlight, 1, 1000);
+    fields.number("bytesInFlight", limits.bytesInFlight, 1, most);
+    fields.number("mergeGapBytes", limits.mergeGapBytes, 0, most);
+    fields.number("mergedRequestBytes", limits.mergedRequestBytes, 0, most);
+    STIPPLE_CHECK(fields.finish());
+    return limits;
+}
+
+Result<SessionLimits> limitsFromJson(std::string_view text, const SessionLimits& base) {
+    STIPPLE_TRY(value, parseJson(text, "limits"));
+    return limitsFromJson(value, base);
+}
+
+std::optional<NamedView> namedViewFromName(std::string_view name) {
+    for (const auto& [text, view] : namedViews)
+        if (name == text)
+            return view;
+    return std::nullopt;
+}
+
+json toJson(const Camera& camera) {
+    return {{"projection", nameOf(projections, camera.projection)},
+            {"position", vectorJson(camera.position)},
+            {"target", vectorJson(camera.target)},
+            {"up", vectorJson(camera.up)},
+            {"fovYDegrees", camera.fovYDegrees},
+            {"orthoHeight", camera.orthoHeight}};
+}
+
+json toJson(const Style& style) {
+    json edl = {{"enabled", style.edl.enabled},
+                {"neighbours", style.edl.neighbours},
+                {"radiusPixels", style.edl.radiusPixels},
+                {"strength", style.edl.strength}};
+    return {{"colourMode", nameOf(colourModes, style.colourMode)},
+            {"gradient", nameOf(gradients, style.gradient)},
+            {"intensityRange", rangeJson(style.intensityRange)},
+            {"elevationRange", rangeJson(style.elevationRange)},
+            {"sizeMode", nameOf(sizeModes, style.sizeMode)},
+            {"sizePixels", style.sizePixels},
+            {"sizeWorld", style.sizeWorld},
+            {"minSizePixels", style.minSizePixels},
+            {"maxSizePixels", style.maxSizePixels},
+            {"shape", nameOf(shapes, style.shape)},
+            {"edl", edl},
+            {"background", style.background}};
+}
+
+json toJson(const SessionLimits& limits) {
+    return {{"pointBudget", limits.pointBudget},
+            {"minNodePixels", limits.minNodePixels},
+            {"cacheBytes", limits.cacheBytes},
+            {"requestsInFlight", limits.requestsInFlight},
+            {"bytesInFlight", limits.bytesInFlight},
+            {"mergeGapBytes", limits.mergeGapBytes},
+            {"mergedRequestBytes", limits.mergedRequestBytes}};
+}
+
+json toJson(const FrameCounters& c) {
+    return {{"nodesKnown", c.nodesKnown},
+            {"nodesVisited", c.nodesVisited},
+            {"nodesOutsideFrustum", c.nodesOutsideFrustum},
+            {"nodesTooSmall", c.nodesTooSmall},
+            {"nodesOverBudget", c.nodesOverBudget},
+            {"nodesSelected", c.nodesSelected},
+            {"nodesWaiting", c.nodesWaiting},
+            {"nodesDrawn", c.nodesDrawn},
+            {"pointsSelected", c.pointsSelected},
+            {"pointsDrawn", c.pointsDrawn},
+            {"chunksWaiting", c.chunksWaiting},
+            {"passesRun", c.passesRun},
+            {"passesSkipped", c.passesSkipped},
+            {"complete", c.complete}};
+}
+
+json toJson(const SessionCounters& c) {
+    return {{"framesDrawn", c.framesDrawn},
+            {"framesSkipped", c.framesSkipped},
+            {"selectionsRun", c.selectionsRun},
+            {"selectionsSkipped", c.selectionsSkipped},
+            {"requests", c.requests},
+            {"requestsMerged", c.requestsMerged},
+            {"requestsFailed", c.requestsFailed},
+            {"requestsCancelled", c.requestsCancelled},
+            {"bytesRequested", c.bytesRequested},
+            {"bytesReceived", c.bytesReceived},
+            {"chunksLoaded", c.chunksLoaded},
+            {"nodesDecoded", c.nodesDecoded},
+            {"pointsDecoded", c.pointsDecoded},
+            {"nodesEvicted", c.nodesEvicted},
+            {"cacheBytes", c.cacheBytes},
+            {"cacheBytesPeak", c.cacheBytesPeak}};
+}
+
+json toJson(const Error& error) {
+    return {{"code", errorCodeName(error.code)},
+            {"what", error.what},
+            {"where", error.where},
+            {"advice", error.advice},
+            {"sentence", error.sentence()}};
+}
+
+json toJson(const BoxD& box) {
+    if (box.empty())
+        return nullptr;
+    return {{"min", vectorJson(box.min)}, {"max", vectorJson(box.max)}};
+}
+
+json toJson(const CloudState& cloud) {
+    json value = {{"id", cloud.id},
+                  {"name", cloud.name},
+                  {"stage", nameOf(stages, cloud.stage)},
+                  {"visible", cloud.visible}};
+    if (cloud.stage == CloudStage::failed)
+        value["error"] = toJson(cloud.error);
+    if (cloud.metadata) {
+        json attributes = json::array();
+        for (const Attribute& attribute : cloud.metadata->schema.attributes)
+            attributes.push_back(attribute.name);
+        value["pointCount"] = cloud.metadata->pointCount;
+        value["bounds"] = toJson(cloud.metadata->worldBounds());
+        value["crs"] = cloud.metadata->crs.name;
+        value["attributes"] = std::move(attributes);
+    }
+    return value;
+}
+
+} // namespace stipple
