@@ -1,39 +1,60 @@
-// Writes LAS files: point formats 0-10. The output gets its name only when finish() succeeds.
+// Writes LAS files: point formats 0-10, LAS 1.0-1.4. The output gets its name only when finish() succeeds.
+//
+// Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB).
 #pragma once
 
 #include "shared/base/result.hpp"
 #include "shared/las/las_header.hpp"
+#include "shared/las/las_reader.hpp"
 #include "shared/points/point_batch.hpp"
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace stipple::las {
 
 struct WriterOptions {
     Grid grid;
-    Schema schema;        // attributes with LAS names go to their fields, all others to extra bytes
-    int pointFormat = -1; // -1: the smallest format that holds every attribute with a LAS name
-    int versionMinor =
-        -1; // -1: the lowest version that allows the format (1.2, 1.3, 1.4), 1.4 for > 2^32 - 1 points
-    std::string wkt;       // written as the OGC WKT record; empty: none
-    std::vector<Vlr> vlrs; // further records, copied as they are (not: WKT, extra bytes)
+    // Attributes with LAS names go to their fields, all others to described extra bytes, in this order.
+    // A LAS attribute that the format has no field for (GPS Time in format 0, Scan Angle Rank in format
+    // 6) goes to extra bytes too, so nothing is lost.
+    Schema schema;
+    int pointFormat = -1; // -1: the smallest that holds every LAS attribute, or as many of them as can be
+    // -1: the lowest that allows the format (1.2, 1.3, 1.4); 1.4 for WKT, described extra bytes, extended
+    // records, or expectedPoints > 2^32 - 1
+    int versionMinor = -1;
+    std::uint64_t expectedPoints = 0; // 0: unknown
+    std::string wkt;                  // written as the OGC WKT record; empty: none
+    std::vector<Vlr> vlrs;            // further records, copied as they are (not: WKT, extra bytes, LAZ)
     std::string systemIdentifier = "stipple";
+    std::string generatingSoftware = "stipple";
     std::uint16_t globalEncoding = 0; // the WKT bit is set by the writer
+    std::uint16_t fileSourceId = 0;
+    std::array<std::uint8_t, 16> projectId{};
+    std::uint16_t creationDay = 0, creationYear = 0; // 0: left open (same input, same bytes)
 };
+
+// Options that write a file like the one read: its grid, schema, format, version, records and identity.
+// Records whose data were left in the file (Vlr::omitted) are not among them.
+WriterOptions optionsLike(const Reader& reader);
 
 class Writer {
   public:
-    // Errors: outputs that can't be made (ioFailed), a schema that no format holds (invalidArgument).
+    // Errors: outputs that can't be made (writeFailed); options that contradict themselves or LAS, such as an
+    // "Intensity" that is no uint16 (invalidArgument).
     static Result<std::unique_ptr<Writer>> create(const std::string& path, const WriterOptions& options);
     virtual ~Writer() = default; // without finish(): removes the temporary file
 
     // Appends points. outOfRange if an integer does not fit 32 bits or a value its field
-    // (e.g. return number 9 in format 1).
+    // (e.g. return number 9 in format 1). After an error the file can't be finished.
     virtual Status write(const PointBatch& batch) = 0;
     // Writes counts, bounds and EVLRs, closes and renames.
     virtual Status finish() = 0;
+    // Counts and bounds are those of the points written so far.
     virtual const Header& header() const = 0;
+    // What could not be written as asked, one sentence each: names cut to the 32 bytes LAS has.
+    virtual const std::vector<std::string>& warnings() const = 0;
 };
 
 } // namespace stipple::las
