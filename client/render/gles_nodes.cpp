@@ -1,0 +1,68 @@
+#include "client/render/gles_nodes.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace stipple::gles {
+
+// Fills `buffer` with `values` unless it is filled already, and leaves it bound. False: nothing to do.
+template <class T>
+bool NodeBuffers::upload(Entry& entry, Buffer& buffer, const std::vector<T>& values) {
+    if (buffer || values.empty())
+        return false;
+    std::uint64_t size = values.size() * sizeof(T);
+    glBindBuffer(GL_ARRAY_BUFFER, buffer.make());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(size), values.data(), GL_STATIC_DRAW);
+    entry.bytes += size;
+    bytes_ += size;
+    uploaded_ = true;
+    return true;
+}
+
+void NodeBuffers::bind(const ResidentNode& node, ColourSource source) {
+    Entry& entry = entries_[node.id];
+    entry.lastFrame = frame_;
+    ++boundInFrame_;
+    glBindVertexArray(entry.array.make());
+    if (upload(entry, entry.positions, node.positionWords)) {
+        glEnableVertexAttribArray(positionLocation);
+        glVertexAttribIPointer(positionLocation, 2, GL_UNSIGNED_INT, 0, nullptr);
+    }
+    if (upload(entry, entry.lows, node.positionLowWords)) {
+        glEnableVertexAttribArray(positionLowLocation);
+        glVertexAttribIPointer(positionLowLocation, 1, GL_UNSIGNED_INT, 0, nullptr);
+    }
+    if (source == ColourSource::words && upload(entry, entry.colours, node.colourWords)) {
+        glEnableVertexAttribArray(colourLocation);
+        glVertexAttribPointer(colourLocation, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
+    }
+    if (source == ColourSource::intensity && upload(entry, entry.intensities, node.intensity)) {
+        glEnableVertexAttribArray(intensityLocation);
+        glVertexAttribPointer(intensityLocation, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+    }
+}
+
+bool NodeBuffers::endFrame() {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> idle; // last frame, id
+    std::uint64_t idleBytes = 0;
+    for (const auto& [id, entry] : entries_)
+        if (entry.lastFrame != frame_) {
+            idle.emplace_back(entry.lastFrame, id);
+            idleBytes += entry.bytes;
+        }
+    std::uint64_t limit = boundInFrame_ > 0 ? maxIdleNodeBytes : 0;
+    if (idleBytes > limit)
+        std::sort(idle.begin(), idle.end());
+    for (std::size_t i = 0; i < idle.size() && idleBytes > limit; ++i) {
+        auto entry = entries_.find(idle[i].second);
+        idleBytes -= entry->second.bytes;
+        bytes_ -= entry->second.bytes;
+        entries_.erase(entry);
+    }
+    ++frame_;
+    boundInFrame_ = 0;
+    return std::exchange(uploaded_, false);
+}
+
+} // namespace stipple::gles

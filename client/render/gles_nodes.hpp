@@ -1,0 +1,53 @@
+// The nodes on the GPU: a vertex array and buffers for each ResidentNode, keyed by its id. Only the
+// attributes in use are uploaded. Nodes that are not drawn are kept up to a limit in bytes, least recently
+// drawn first to go.
+#pragma once
+
+#include "client/render/gles_objects.hpp"
+#include "client/render/raster_setup.hpp"
+
+#include <cstdint>
+#include <unordered_map>
+
+namespace stipple::gles {
+
+inline constexpr std::uint64_t maxIdleNodeBytes = 64ull << 20;
+
+// Locations of points.vert.glsl.
+enum PointAttribute : GLuint {
+    positionLocation = 0,
+    positionLowLocation = 1,
+    colourLocation = 2,
+    intensityLocation = 3
+};
+
+class NodeBuffers {
+  public:
+    // Binds the node's vertex array with what `source` needs, uploading what is missing.
+    void bind(const ResidentNode& node, ColourSource source);
+
+    // Ends a frame: frees nodes that bind() has not seen in it, as far as the limit asks. A frame without
+    // nodes frees everything. Returns whether something was uploaded since the last call.
+    bool endFrame();
+
+    std::uint64_t bytes() const { return bytes_; }
+
+  private:
+    struct Entry {
+        VertexArray array;
+        Buffer positions, lows, colours, intensities;
+        std::uint64_t bytes = 0;
+        std::uint64_t lastFrame = 0;
+    };
+
+    template <class T>
+    bool upload(Entry& entry, Buffer& buffer, const std::vector<T>& values);
+
+    std::unordered_map<std::uint64_t, Entry> entries_;
+    std::uint64_t bytes_ = 0;
+    std::uint64_t frame_ = 1;
+    std::uint64_t boundInFrame_ = 0;
+    bool uploaded_ = false;
+};
+
+} // namespace stipple::gles

@@ -1,0 +1,140 @@
+#include "client/render/raster_setup.hpp"
+
+#include "client/render/gradients.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+namespace stipple {
+namespace {
+
+// Pixels a world unit takes: at distance 1 in perspective, anywhere in orthographic views.
+struct Focal {
+    double x, y;
+};
+Focal focalOf(const FramePlan& plan) {
+    const ViewTransform& view = plan.view;
+    double halfHeight = view.projection == Projection::perspective ? view.tanHalfFovY : view.halfHeight;
+    return {plan.width / (2 * halfHeight * view.aspect), plan.height / (2 * halfHeight)};
+}
+
+int sizeStepsOf(double pixels) {
+    return static_cast<int>(std::lround(std::clamp(pixels, 1.0, double{maxPointPixels}) * sizeSteps));
+}
+
+int depthShiftOf(std::uint32_t nearBits, std::uint32_t farBits) {
+    return std::max(0, static_cast<int>(std::bit_width(farBits - nearBits)) - depthBits);
+}
+
+ColourSource sourceOf(ColourMode mode, const ResidentNode& node) {
+    switch (mode) {
+    case ColourMode::rgb:
+        return node.colourWords.empty() ? ColourSource::plain : ColourSource::words;
+    case ColourMode::intensity:
+        return node.intensity.empty() ? ColourSource::plain : ColourSource::intensity;
+    case ColourMode::elevation:
+        return ColourSource::elevation;
+    }
+    return ColourSource::plain;
+}
+
+// The middle of a node along the view direction, world units.
+double centreDistance(const ViewTransform& view, const DrawNode& node) {
+    double half = std::ldexp(0.5, node.node->nodeBits - node.coarseShift);
+    Vec3d relative;
+    for (int axis = 0; axis < 3; ++axis)
+        relative[axis] =
+            (half - node.cameraCell[axis] - double{node.cameraFraction[axis]}) * node.scale[axis];
+    return dot(relative, view.forward);
+}
+
+} // namespace
+
+RasterFrame rasterFrame(const FramePlan& plan) {
+    const Style& style = plan.style;
+    RasterFrame frame;
+    frame.width = plan.width;
+    frame.height = plan.height;
+    frame.perspective = plan.view.projection == Projection::perspective;
+    frame.centreX = static_cast<float>(plan.width * 0.5);
+    frame.centreY = static_cast<float>(plan.height * 0.5);
+    frame.near = static_cast<float>(plan.view.near);
+    frame.far = static_cast<float>(plan.view.far);
+    frame.nearBits = floatBits(frame.near);
+    frame.depthShift = depthShiftOf(frame.nearBits, floatBits(frame.far));
+
+    frame.minSize64 = sizeStepsOf(style.minSizePixels);
+    frame.maxSize64 = std::max(frame.minSize64, sizeStepsOf(style.maxSizePixels));
+    double pixels =
+        style.sizeMode == PointSizeMode::fixed ? style.sizePixels : style.sizeWorld * focalOf(plan).y;
+    frame.sizeByDistance = style.sizeMode == PointSizeMode::world && frame.perspective;
+    frame.worldSize64 = static_cast<float>(pixels * sizeSteps);
+    frame.size64 = std::clamp(sizeStepsOf(pixels), frame.minSize64, frame.maxSize64);
+    bool singlePixels = frame.sizeByDistance ? frame.maxSize64 == sizeSteps : frame.size64 == sizeSteps;
+    frame.circle = style.shape == PointShape::circle && !singlePixels;
+    return frame;
+}
+
+RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
+    const Style& style = plan.style;
+    RasterNode raster;
+    Focal focal = focalOf(plan);
+    for (int axis = 0; axis < 3; ++axis) {
+        auto i = static_cast<std::size_t>(axis);
+        raster.rowX[i] = static_cast<float>(plan.view.right[axis] * node.scale[axis] * focal.x);
+        raster.rowY[i] = static_cast<float>(plan.view.up[axis] * node.scale[axis] * focal.y);
+        raster.rowD[i] = static_cast<float>(plan.view.forward[axis] * node.scale[axis]);
+    }
+    raster.fraction = node.cameraFraction;
+    raster.cell = node.cameraCell;
+    raster.positionShift = node.node->positionShift;
+    raster.coarseShift = node.coarseShift;
+
+    raster.source = sourceOf(style.colourMode, *node.node);
+    Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;
+    double width = range.max > range.min ? range.max - range.min : 1.0;
+    double entries = gradientEntries - 1;
+    bool elevation = raster.source == ColourSource::elevation;
+    double step = elevation ? node.scale.z : 1.0;
+    double base = elevation ? node.cameraZ : 0.0;
+    raster.rampScale = static_cast<float>(step / width * entries);
+    raster.rampOffset = static_cast<float>((base - range.min) / width * entries + 0.5);
+    return raster;
+}
+
+std::vector<std::size_t> drawOrder(const FramePlan& plan) {
+    using Place = std::tuple<double, NodeKey, std::uint64_t, std::size_t>;
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+        const DrawNode& node = plan.nodes[i];
+        if (node.node && node.pointCount > 0)
+            places.emplace_back(centreDistance(plan.view, node), node.node->key, node.node->id, i);
+    }
+    std::sort(places.begin(), places.end());
+    std::vector<std::size_t> order;
+    for (const Place& place : places)
+        order.push_back(std::get<3>(place));
+    return order;
+}
+
+EdlSetup edlSetup(const EyeDomeLighting& style) {
+    EdlSetup setup;
+    setup.enabled = style.enabled && style.strength > 0;
+    if (!setup.enabled)
+        return setup;
+    setup.neighbours = style.neighbours <= 4 ? 4 : 8;
+    double radius = std::clamp(style.radiusPixels, 1.0, 64.0);
+    for (int i = 0; i < setup.neighbours; ++i) {
+        double angle = 2 * std::numbers::pi * i / setup.neighbours;
+        setup.offsets[static_cast<std::size_t>(i)] = {
+            static_cast<int>(std::lround(radius * std::cos(angle))),
+            static_cast<int>(std::lround(radius * std::sin(angle)))};
+    }
+    setup.power = static_cast<float>(300 * style.strength / (setup.neighbours * std::numbers::ln2));
+    return setup;
+}
+
+} // namespace stipple

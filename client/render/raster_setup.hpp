@@ -1,0 +1,103 @@
+// What both rasterizers derive from a frame plan: computed once, in double, rounded once to the floats and
+// integers that the vertex shader and the software kernel use alike. It is here that "the same picture"
+// is made: the rules below hold, in integers, on both sides.
+//
+// Window coordinates follow OpenGL: x right, y up, pixel (i, j) is the square [i, i+1) × [j, j+1).
+//
+// Position   r = float(p - cell) - fraction            grid steps from the camera, per axis
+//            d = r · rowD                              view distance, world units
+//            (x, y) = (r · rowX, r · rowY) / d + centre    pixels; orthographic: without "/ d"
+//            then snapped to the middle of its 1/128-pixel cell: X = 2 floor(128 x) + 1, in 1/256 pixel.
+//            This moves a point by at most 1/256 pixel and survives the sub-pixel grid of a GPU (1/256).
+// Size       in whole 1/64 pixels, so half a size is even in 1/256 pixel and, X being odd, no pixel centre
+//            ever lies on the edge of a point: coverage needs no tie rule.
+// Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
+//            point is covered always, so that no point vanishes between pixel centres.
+// Depth      step q = (bits(d) - bits(near)) >> depthShift, where bits() reads the float as an integer: a
+//            piecewise linear logarithm, monotone, without rounding, under 2^24. The depth buffer holds
+//            q / 2^24. The nearer step wins; among equal steps the point that comes first in drawOrder().
+//            The logarithm of frame_plan.hpp is this one made smooth; eye-dome lighting takes it from q.
+#pragma once
+
+#include "client/core/frame_plan.hpp"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace stipple {
+
+inline constexpr int positionCells = 128; // cells a pixel, per axis
+inline constexpr int sizeSteps = 64;      // size steps a pixel
+inline constexpr int depthBits = 24;
+inline constexpr int maxPointPixels = 255; // any larger maximum size is clamped to this
+inline constexpr int maxPictureSide = 16384;
+// Positions are clamped to this before they become integers; no size reaches back from there.
+inline constexpr float positionLimit = 32768;
+
+static_assert(positionLimit - maxPointPixels > maxPictureSide);
+// Squared distances inside a point, in 1/256 pixel, fit 32 bits: 2 × (255 / 2 × 256)² < 2^31.
+static_assert(2.0 * (maxPointPixels * 128.0) * (maxPointPixels * 128.0) < 2147483648.0);
+
+inline std::uint32_t floatBits(float value) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+inline float floatOfBits(std::uint32_t bits) {
+    float value;
+    std::memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+// Where a point's colour comes from. `plain`: the node has no values of the wanted kind.
+enum class ColourSource : std::uint8_t { words = 0, intensity = 1, elevation = 2, plain = 3 };
+inline constexpr std::uint32_t plainColourWord = 0xFFB4B4B4; // R | G << 8 | B << 16 | 255 << 24
+
+struct RasterFrame {
+    int width = 0, height = 0;
+    bool perspective = true;
+    float centreX = 0, centreY = 0; // half the picture
+    float near = 0, far = 0;
+    std::uint32_t nearBits = 0;
+    int depthShift = 0;
+    bool sizeByDistance = false; // size64 = clamp(worldSize64 / d); else size64 holds for all points
+    int size64 = 64;             // 1/64 pixel, clamped
+    float worldSize64 = 0;       // 1/64 pixel at distance 1
+    int minSize64 = 64, maxSize64 = 64;
+    bool circle = false; // false where every point is a single pixel
+};
+
+struct RasterNode {
+    std::array<float, 3> rowX{}, rowY{}, rowD{}, fraction{};
+    std::array<std::int32_t, 3> cell{};
+    int positionShift = 0, coarseShift = 0;
+    ColourSource source = ColourSource::words;
+    // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
+    // r.z for elevation.
+    float rampScale = 0, rampOffset = 0;
+};
+
+// Both sides of the plan must be in 1..maxPictureSide.
+RasterFrame rasterFrame(const FramePlan& plan);
+RasterNode rasterNode(const FramePlan& plan, const DrawNode& node);
+
+// Indices of plan.nodes that have points to draw: near to far by the node's centre, then by key, then by
+// id. Empty prefixes are left out.
+std::vector<std::size_t> drawOrder(const FramePlan& plan);
+
+// Eye-dome lighting (Potree thesis §4.4, eq. 4.5 and 4.6). With P the product over the neighbours of
+// max(1, distance / neighbour distance), response = log2(P) / n and
+//   shade = exp(-response × 300 × strength) = exp2(-log2(P) × power).
+// Neighbours that are empty or outside the picture count as 1; empty pixels keep the background.
+struct EdlSetup {
+    bool enabled = false; // false too where the strength makes it a pass that changes nothing
+    int neighbours = 0;   // 4 or 8
+    std::array<std::array<int, 2>, 8> offsets{}; // pixels, y up; none is (0, 0)
+    float power = 0;
+};
+inline constexpr float edlProductLimit = 1e30f; // shade is 0 long before
+EdlSetup edlSetup(const EyeDomeLighting& style);
+
+} // namespace stipple

@@ -1,0 +1,96 @@
+// One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
+// in the same order of operations as the software renderer.
+// Defined before this text: LOW_WORDS where the node has a third position word; CIRCLE for round points.
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+
+layout(location = 0) in uvec2 aPosition;
+#ifdef LOW_WORDS
+layout(location = 1) in uint aPositionLow;
+#endif
+layout(location = 2) in vec4 aColour;
+layout(location = 3) in float aIntensity;
+
+uniform ivec3 uCell;
+uniform vec3 uFraction;
+uniform vec3 uRowX;
+uniform vec3 uRowY;
+uniform vec3 uRowD;
+uniform int uPositionShift;
+uniform int uCoarseShift;
+uniform int uColourSource; // ColourSource
+uniform vec2 uRamp;        // scale, offset
+
+uniform vec2 uCentre; // half the picture, pixels
+uniform vec2 uNearFar;
+uniform uint uNearBits;
+uniform int uDepthShift;
+uniform bool uPerspective;
+uniform bool uSizeByDistance;
+uniform float uSize64;
+uniform float uWorldSize64;
+uniform vec2 uSizeRange64;
+uniform sampler2D uGradient;
+
+flat out vec4 vColour;
+#ifdef CIRCLE
+flat out ivec3 vDisc; // centre in 1/256 pixel, squared radius in (1/256 pixel)²
+#endif
+
+float along(vec3 row, vec3 r) {
+    return (r.x * row.x + r.y * row.y) + r.z * row.z;
+}
+
+vec4 gradientAt(float value) {
+    float entry = clamp(value * uRamp.x + uRamp.y, 0.0, float(GRADIENT_ENTRIES - 1));
+    return texelFetch(uGradient, ivec2(int(entry), 0), 0);
+}
+
+vec4 colourOf(vec3 r) {
+    if (uColourSource == 1)
+        return gradientAt(aIntensity);
+    if (uColourSource == 2)
+        return gradientAt(r.z);
+    return aColour;
+}
+
+void main() {
+    uvec3 p = uvec3(aPosition.x & 0x1FFFFFu, (aPosition.x >> 21) | ((aPosition.y << 10) & 0x1FF800u),
+                    aPosition.y >> 11);
+#ifdef LOW_WORDS
+    uint lowMask = (1u << uPositionShift) - 1u;
+    p = (p << uPositionShift) |
+        (uvec3(aPositionLow, aPositionLow >> 10, aPositionLow >> 20) & uvec3(lowMask));
+#endif
+    p >>= uCoarseShift;
+    vec3 r = vec3(ivec3(p) - uCell) - uFraction;
+
+    float d = along(uRowD, r);
+    vColour = colourOf(r);
+#ifdef CIRCLE
+    vDisc = ivec3(0);
+#endif
+    gl_PointSize = 1.0;
+    if (!(d >= uNearFar.x && d <= uNearFar.y)) {
+        gl_Position = vec4(0.0, 0.0, 2.0, 1.0); // beyond the far plane: clipped
+        return;
+    }
+    float inverse = 1.0 / d;
+    float scale = uPerspective ? inverse : 1.0;
+    vec2 window = vec2(along(uRowX, r), along(uRowY, r)) * scale + uCentre;
+    vec2 cell = floor(clamp(window, vec2(-32768.0), vec2(32768.0)) * 128.0);
+
+    float size64 = uSizeByDistance
+                       ? floor(clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y))
+                       : uSize64;
+    gl_PointSize = size64 * (1.0 / 64.0);
+#ifdef CIRCLE
+    int radius = 2 * int(size64);
+    vDisc = ivec3(2 * ivec2(cell) + 1, radius * radius);
+#endif
+    // Middle of the cell in normalised device coordinates, w = 1: nothing is divided after this.
+    vec2 snapped = (cell + 0.5) * (1.0 / 128.0);
+    uint q = (floatBitsToUint(d) - uNearBits) >> uDepthShift;
+    gl_Position = vec4((snapped - uCentre) / uCentre, float(q) * (1.0 / 8388608.0) - 1.0, 1.0);
+}
