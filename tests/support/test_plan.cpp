@@ -1,0 +1,104 @@
+#include "tests/support/test_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stipple::test {
+
+std::shared_ptr<const ResidentNode> residentNode(const TestNode& node) {
+    static std::uint64_t nextId = 1;
+    auto resident = std::make_shared<ResidentNode>();
+    resident->id = nextId++;
+    resident->nodeBits = node.nodeBits;
+    resident->positionShift = std::max(0, node.nodeBits - positionWordBits);
+    resident->pointCount = resident->totalPoints = static_cast<std::uint32_t>(node.points.size());
+    int shift = resident->positionShift;
+    std::uint32_t lowMask = (1u << shift) - 1;
+    for (const TestPoint& p : node.points) {
+        std::uint32_t y = p.y >> shift;
+        resident->positionWords.push_back(packPositionWord0(p.x >> shift, y));
+        resident->positionWords.push_back(packPositionWord1(y, p.z >> shift));
+        if (shift > 0)
+            resident->positionLowWords.push_back((p.z & lowMask) << 20 | (p.y & lowMask) << 10 |
+                                                 (p.x & lowMask));
+        if (node.hasColour)
+            resident->colourWords.push_back(p.r | std::uint32_t{p.g} << 8 | std::uint32_t{p.b} << 16 |
+                                            0xFF000000u);
+        if (node.hasIntensity)
+            resident->intensity.push_back(p.intensity);
+    }
+    return resident;
+}
+
+FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style) {
+    FramePlan plan;
+    plan.width = view.width;
+    plan.height = view.height;
+    plan.style = style;
+    plan.view.projection = view.projection;
+    plan.view.forward = normalized(view.target - view.position);
+    plan.view.right = normalized(cross(plan.view.forward, view.up));
+    plan.view.up = cross(plan.view.right, plan.view.forward);
+    plan.view.tanHalfFovY = view.tanHalfFovY;
+    plan.view.halfHeight = view.halfHeight;
+    plan.view.aspect = static_cast<double>(view.width) / view.height;
+    plan.view.near = view.near;
+    plan.view.far = view.far;
+    std::uint32_t index = 0;
+    for (const TestNode& node : nodes) {
+        auto resident = std::make_shared<ResidentNode>(*residentNode(node));
+        resident->key = {8, index++, 0, 0};
+        DrawNode draw;
+        draw.pointCount = resident->pointCount;
+        draw.coarseShift = node.coarseShift;
+        draw.scale = node.scale * std::ldexp(1.0, node.coarseShift);
+        for (int axis = 0; axis < 3; ++axis) {
+            double steps = (view.position[axis] - node.corner[axis]) / draw.scale[axis];
+            auto i = static_cast<std::size_t>(axis);
+            double cell = std::floor(steps);
+            // A fraction that rounds to 1 belongs to the next cell.
+            auto fraction = static_cast<float>(steps - cell);
+            if (fraction >= 1) {
+                fraction = 0;
+                cell += 1;
+            }
+            draw.cameraCell[i] = static_cast<std::int32_t>(cell);
+            draw.cameraFraction[i] = fraction;
+        }
+        draw.cameraZ = view.position.z;
+        draw.node = std::move(resident);
+        plan.nodes.push_back(std::move(draw));
+    }
+    return plan;
+}
+
+std::uint64_t TestRandom::next() { // splitmix64
+    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return z ^ (z >> 31);
+}
+
+TestNode randomNode(std::uint64_t seed, std::uint32_t count, int nodeBits, Vec3d corner, double scale) {
+    TestRandom random(seed);
+    TestNode node;
+    node.nodeBits = nodeBits;
+    node.corner = corner;
+    node.scale = {scale, scale, scale};
+    auto coordinate = [&] { return static_cast<std::uint32_t>(random.next() >> (64 - nodeBits)); };
+    auto level = [&] { return static_cast<std::uint8_t>(random.below(256)); };
+    for (std::uint32_t i = 0; i < count; ++i) {
+        TestPoint p;
+        p.x = coordinate();
+        p.y = coordinate();
+        p.z = coordinate();
+        p.r = level();
+        p.g = level();
+        p.b = level();
+        p.intensity = static_cast<float>(random.below(4096));
+        node.points.push_back(p);
+    }
+    return node;
+}
+
+} // namespace stipple::test

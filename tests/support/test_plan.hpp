@@ -1,0 +1,59 @@
+// Frame plans made by hand: clouds of integer points in one or several nodes, seen by a camera given in
+// world coordinates. What the client core does for real clouds, in a few lines of double precision.
+#pragma once
+
+#include "client/core/frame_plan.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace stipple::test {
+
+struct TestPoint {
+    std::uint32_t x = 0, y = 0, z = 0; // grid steps inside the node
+    std::uint8_t r = 255, g = 255, b = 255;
+    float intensity = 0;
+};
+
+// A cube of 2^nodeBits grid steps of `scale` world units whose lowest corner is at `corner` (world).
+struct TestNode {
+    std::vector<TestPoint> points;
+    int nodeBits = 16;
+    Vec3d corner{0, 0, 0};
+    Vec3d scale{0.01, 0.01, 0.01};
+    int coarseShift = 0;
+    bool hasColour = true, hasIntensity = true;
+
+    Vec3d world(const TestPoint& p) const {
+        return {corner.x + scale.x * p.x, corner.y + scale.y * p.y, corner.z + scale.z * p.z};
+    }
+};
+
+struct TestView {
+    Vec3d position{0, -10, 0}, target{0, 0, 0}, up{0, 0, 1};
+    Projection projection = Projection::perspective;
+    double tanHalfFovY = 0.5, halfHeight = 5, near = 0.1, far = 1000;
+    int width = 160, height = 120;
+};
+
+std::shared_ptr<const ResidentNode> residentNode(const TestNode& node);
+FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style = {});
+
+// Numbers in [0, 1) that are the same everywhere.
+class TestRandom {
+  public:
+    explicit TestRandom(std::uint64_t seed) : state_(seed) {}
+    std::uint64_t next();
+    double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
+    std::uint32_t below(std::uint32_t limit) {
+        return static_cast<std::uint32_t>(unit() * static_cast<double>(limit));
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+// `count` points anywhere in the node, with random colours and intensities 0..4095.
+TestNode randomNode(std::uint64_t seed, std::uint32_t count, int nodeBits, Vec3d corner, double scale);
+
+} // namespace stipple::test
