@@ -34,6 +34,15 @@ void storeLe(std::uint8_t* to, T value) {
     std::memcpy(to, &value, sizeof value);
 }
 
+// The same bits as another type of that size (std::bit_cast, which the WebAssembly library does not have).
+template <class To, class From>
+To bitCast(const From& from) {
+    static_assert(sizeof(To) == sizeof(From) && std::is_trivially_copyable_v<From>);
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
+}
+
 class ByteReader {
   public:
     explicit ByteReader(ByteSpan bytes) : bytes_(bytes) {}

@@ -26,13 +26,13 @@ Kind kindOf(AttributeType type) {
 // A descriptor's "anytype" field as a double, and back (saturated: 2^64 becomes the largest u64).
 double anyToDouble(Kind kind, std::uint64_t bits) {
     if (kind == Kind::isFloat)
-        return std::bit_cast<double>(bits);
+        return bitCast<double>(bits);
     return kind == Kind::isSigned ? static_cast<double>(static_cast<std::int64_t>(bits))
                                   : static_cast<double>(bits);
 }
 std::uint64_t doubleToAny(Kind kind, double value) {
     if (kind == Kind::isFloat)
-        return std::bit_cast<std::uint64_t>(value);
+        return bitCast<std::uint64_t>(value);
     if (std::isnan(value))
         return 0;
     if (kind == Kind::isSigned) {
@@ -158,7 +158,7 @@ class Appender {
 void extendLimits(ValueRange::Limits& limits, Kind kind, std::uint64_t bits) {
     auto less = [kind](std::uint64_t a, std::uint64_t b) {
         if (kind == Kind::isFloat)
-            return std::bit_cast<double>(a) < std::bit_cast<double>(b);
+            return bitCast<double>(a) < bitCast<double>(b);
         return kind == Kind::isSigned ? static_cast<std::int64_t>(a) < static_cast<std::int64_t>(b) : a < b;
     };
     if (!limits.known || less(bits, limits.minBits))
@@ -192,7 +192,7 @@ void extendRangeAs(ValueRange& range, const Attribute& attribute, ByteSpan colum
             if (!any)
                 continue;
             if constexpr (std::is_floating_point_v<T>)
-                extendLimits(range.component[c], kind, std::bit_cast<std::uint64_t>(double{value}));
+                extendLimits(range.component[c], kind, bitCast<std::uint64_t>(double{value}));
             else if constexpr (std::is_signed_v<T>)
                 extendLimits(range.component[c], kind,
                              static_cast<std::uint64_t>(static_cast<std::int64_t>(value)));
