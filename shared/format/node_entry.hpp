@@ -11,6 +11,9 @@
 namespace stipple {
 
 inline constexpr int strataCount = 4;
+// A stratum's block has at least one byte for this many points (padded if need be), so what a decoder
+// allocates is bounded by the bytes that came, for nodes of any number of equal points too.
+inline constexpr std::uint32_t maxPointsPerByte = 16;
 
 // Points in the first `strata` strata of a node of `pointCount` points: every 8th, 4th, 2nd, each.
 inline std::uint32_t strataPrefixPoints(std::uint32_t pointCount, int strata) {

@@ -1,0 +1,36 @@
+#include "shared/format/block_frame.hpp"
+
+#include "shared/base/text.hpp"
+#include "shared/codec/checksum.hpp"
+
+namespace stipple {
+
+Bytes frameBlock(ByteSpan payload) {
+    ByteWriter block;
+    block.write(static_cast<std::uint32_t>(payload.size()));
+    block.write(blockChecksum(payload));
+    block.writeBytes(payload);
+    return block.take();
+}
+
+Result<ByteSpan> unframeBlock(ByteSpan block, const std::string& name, std::uint64_t offsetBytes) {
+    std::string where = cat(name, ", byte ", offsetBytes);
+    ByteReader reader(block);
+    auto size = reader.read<std::uint32_t>();
+    auto checksum = reader.read<std::uint32_t>();
+    if (!reader.ok())
+        return Error{
+            ErrorCode::truncated, cat("the block's frame ends after ", block.size(), " bytes"), where, {}};
+    if (size != reader.remaining())
+        return Error{size > reader.remaining() ? ErrorCode::truncated : ErrorCode::corrupt,
+                     cat("the block says that it holds ", size, " bytes, but there are ", reader.remaining()),
+                     where,
+                     {}};
+    ByteSpan payload = reader.readBytes(size);
+    if (blockChecksum(payload) != checksum)
+        return Error{ErrorCode::corrupt, "the block's checksum does not match its bytes", where,
+                     "the file was altered or damaged; copy or convert it again"};
+    return payload;
+}
+
+} // namespace stipple

@@ -1,0 +1,335 @@
+#include "shared/base/text.hpp"
+#include "shared/format/block_frame.hpp"
+#include "shared/format/file_parts.hpp"
+#include "shared/format/picture_attributes.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace stipple {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<const char*, 3> colourNames{"none", "rgb", "intensity"};
+
+// JSON has no numbers for these.
+Json numberJson(double value) {
+    if (std::isnan(value))
+        return "NaN";
+    if (std::isinf(value))
+        return value > 0 ? "Infinity" : "-Infinity";
+    return value;
+}
+
+template <class T>
+Json vecJson(const Vec3<T>& v) {
+    return Json::array({Json(v.x), Json(v.y), Json(v.z)});
+}
+
+Json attributeJson(const Attribute& attribute, const AttributeStatistics& statistics) {
+    Json json;
+    json["name"] = attribute.name;
+    json["type"] = attributeTypeName(attribute.type);
+    json["components"] = attribute.components;
+    json["description"] = attribute.description;
+    json["unit"] = attribute.unit;
+    json["scale"] = numberJson(attribute.scale);
+    json["offset"] = numberJson(attribute.offset);
+    if (attribute.noData)
+        json["noData"] = numberJson(*attribute.noData);
+    json["min"] = numberJson(statistics.min);
+    json["max"] = numberJson(statistics.max);
+    json["mean"] = numberJson(statistics.mean);
+    json["deviation"] = numberJson(statistics.deviation);
+    Json histogram = Json::array();
+    for (const auto& [value, count] : statistics.histogram)
+        histogram.push_back({value, count});
+    json["histogram"] = std::move(histogram);
+    return json;
+}
+
+// Text from elsewhere may be in any encoding; JSON is UTF-8. Bytes that are not become U+FFFD.
+std::string dump(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// Reads fields of objects; the first one that is missing or of the wrong kind is what `error` names.
+class Fields {
+  public:
+    Fields(const Json& object, std::string path, std::optional<Error>& error)
+        : object_(object), path_(std::move(path)), error_(error) {
+        if (!object.is_object())
+            refuse(path_, "an object");
+    }
+
+    const Json* find(const char* name) const {
+        if (!object_.is_object())
+            return nullptr;
+        auto found = object_.find(name);
+        return found == object_.end() ? nullptr : &*found;
+    }
+    std::string pathOf(const char* name) const { return path_.empty() ? name : path_ + "." + name; }
+
+    std::string text(const char* name) {
+        return get<std::string>(name, "a text", [](const Json& j) { return j.is_string(); });
+    }
+    bool flag(const char* name) {
+        return get<bool>(name, "true or false", [](const Json& j) { return j.is_boolean(); });
+    }
+    double number(const char* name) {
+        const Json* json = find(name);
+        return toNumber(json, pathOf(name));
+    }
+    std::uint64_t count(const char* name) { return toCount(find(name), pathOf(name)); }
+    std::int64_t integer(const char* name, std::int64_t low, std::int64_t high) {
+        std::int64_t value = toInteger(find(name), pathOf(name));
+        if (value < low || value > high)
+            refuse(pathOf(name), cat("a number from ", low, " to ", high));
+        return value;
+    }
+    Vec3d numbers(const char* name) {
+        Vec3d v;
+        if (const Json* json = triple(name))
+            for (int axis = 0; axis < 3; ++axis)
+                v[axis] = toNumber(&(*json)[static_cast<std::size_t>(axis)], pathOf(name));
+        return v;
+    }
+    Vec3i integers(const char* name) {
+        Vec3i v;
+        if (const Json* json = triple(name))
+            for (int axis = 0; axis < 3; ++axis)
+                v[axis] = toInteger(&(*json)[static_cast<std::size_t>(axis)], pathOf(name));
+        return v;
+    }
+    // An array, or an empty one in place of something else.
+    const Json& list(const char* name) {
+        static const Json none = Json::array();
+        const Json* json = find(name);
+        if (json != nullptr && json->is_array())
+            return *json;
+        refuse(pathOf(name), "a list");
+        return none;
+    }
+
+    double toNumber(const Json* json, const std::string& path) {
+        if (json != nullptr && json->is_number())
+            return json->get<double>();
+        if (json != nullptr && json->is_string()) {
+            const auto& text = json->get_ref<const std::string&>();
+            constexpr double infinity = std::numeric_limits<double>::infinity();
+            if (text == "NaN")
+                return std::numeric_limits<double>::quiet_NaN();
+            if (text == "Infinity" || text == "-Infinity")
+                return text[0] == '-' ? -infinity : infinity;
+        }
+        refuse(path, "a number");
+        return 0;
+    }
+    std::int64_t toInteger(const Json* json, const std::string& path) {
+        bool fits = json != nullptr && json->is_number_integer() &&
+                    (!json->is_number_unsigned() || json->get<std::uint64_t>() <= INT64_MAX);
+        if (fits)
+            return json->get<std::int64_t>();
+        refuse(path, "an integer");
+        return 0;
+    }
+    std::uint64_t toCount(const Json* json, const std::string& path) {
+        if (json != nullptr && json->is_number_unsigned())
+            return json->get<std::uint64_t>();
+        refuse(path, "a count");
+        return 0;
+    }
+    void refuse(const std::string& path, std::string expected) {
+        if (!error_)
+            error_ = Error{ErrorCode::corrupt, cat("\"", path, "\" is not ", expected), "metadata", {}};
+    }
+
+  private:
+    template <class T, class Is>
+    T get(const char* name, const char* expected, const Is& is) {
+        const Json* json = find(name);
+        if (json != nullptr && is(*json))
+            return json->get<T>();
+        refuse(pathOf(name), expected);
+        return T{};
+    }
+    const Json* triple(const char* name) {
+        const Json* json = find(name);
+        if (json != nullptr && json->is_array() && json->size() == 3)
+            return json;
+        refuse(pathOf(name), "a list of three numbers");
+        return nullptr;
+    }
+
+    const Json& object_;
+    std::string path_;
+    std::optional<Error>& error_;
+};
+
+const Json& part(Fields& fields, const char* name) {
+    static const Json none;
+    const Json* json = fields.find(name);
+    return json != nullptr ? *json : none;
+}
+
+Crs readCrs(Fields crs) {
+    Crs read;
+    read.name = crs.text("name");
+    read.wkt = crs.text("wkt");
+    if (crs.find("epsg") != nullptr)
+        read.epsg = static_cast<int>(crs.integer("epsg", 0, INT32_MAX));
+    read.proj = crs.text("proj");
+    read.unit = crs.text("unit");
+    read.unitMeters = crs.number("unitMeters");
+    return read;
+}
+
+Attribute readAttribute(Fields& fields) {
+    Attribute attribute;
+    attribute.name = fields.text("name");
+    std::string type = fields.text("type");
+    if (auto known = attributeTypeFromName(type))
+        attribute.type = *known;
+    else
+        fields.refuse(fields.pathOf("type"), "a known type");
+    attribute.components = static_cast<int>(fields.integer("components", 1, 255));
+    attribute.description = fields.text("description");
+    attribute.unit = fields.text("unit");
+    attribute.scale = fields.number("scale");
+    attribute.offset = fields.number("offset");
+    if (fields.find("noData") != nullptr)
+        attribute.noData = fields.number("noData");
+    return attribute;
+}
+
+AttributeStatistics readStatistics(Fields& fields) {
+    AttributeStatistics statistics;
+    statistics.min = fields.number("min");
+    statistics.max = fields.number("max");
+    statistics.mean = fields.number("mean");
+    statistics.deviation = fields.number("deviation");
+    for (const Json& pair : fields.list("histogram")) {
+        if (!pair.is_array() || pair.size() != 2) {
+            fields.refuse(fields.pathOf("histogram"), "a list of pairs");
+            break;
+        }
+        statistics.histogram.emplace_back(fields.toInteger(&pair[0], fields.pathOf("histogram")),
+                                          fields.toCount(&pair[1], fields.pathOf("histogram")));
+    }
+    return statistics;
+}
+
+// What a reader relies on beyond each field's own kind.
+void checkWhole(const CloudMetadata& metadata, Fields& fields) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!(metadata.grid.scale[axis] > 0) || !std::isfinite(metadata.grid.scale[axis]))
+            fields.refuse("grid.scale", "positive");
+        if (!std::isfinite(metadata.grid.offset[axis]))
+            fields.refuse("grid.offset", "finite");
+        constexpr std::int64_t farthest = std::int64_t{1} << 62;
+        if (metadata.rootCube.min[axis] < -farthest || metadata.rootCube.min[axis] > farthest)
+            fields.refuse("rootCube.min", "within 2^62 steps of zero");
+    }
+    for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a)
+        if (metadata.schema.find(metadata.schema.attributes[a].name) != static_cast<int>(a))
+            fields.refuse(cat("attributes[", a, "].name"), "unique");
+    if (!checkPictureAttributes(metadata))
+        fields.refuse("pictureColour", "a colour that the attributes hold");
+}
+
+} // namespace
+
+Bytes writeMetadata(const CloudMetadata& metadata) {
+    Json json;
+    json["name"] = metadata.name;
+    json["pointCount"] = metadata.pointCount;
+    Json& crs = json["crs"];
+    crs["name"] = metadata.crs.name;
+    if (metadata.crs.epsg)
+        crs["epsg"] = *metadata.crs.epsg;
+    crs["unit"] = metadata.crs.unit;
+    crs["unitMeters"] = numberJson(metadata.crs.unitMeters);
+    crs["proj"] = metadata.crs.proj;
+    crs["wkt"] = metadata.crs.wkt;
+    json["grid"] = {{"scale", vecJson(metadata.grid.scale)}, {"offset", vecJson(metadata.grid.offset)}};
+    json["rootCube"] = {{"min", vecJson(metadata.rootCube.min)}, {"bits", metadata.rootCube.bits}};
+    json["spacing"] = numberJson(metadata.spacing);
+    if (!metadata.bounds.empty())
+        json["bounds"] = {{"min", vecJson(metadata.bounds.min)}, {"max", vecJson(metadata.bounds.max)}};
+    json["pictureColour"] = colourNames[static_cast<std::size_t>(metadata.pictureColour)];
+    json["colourIs8Bit"] = metadata.colourIs8Bit;
+    json["attributes"] = Json::array();
+    for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a)
+        json["attributes"].push_back(
+            attributeJson(metadata.schema.attributes[a],
+                          a < metadata.statistics.size() ? metadata.statistics[a] : AttributeStatistics{}));
+    json["pointHash"] = metadata.pointHash;
+    json["sources"] = Json::array();
+    for (const SourceFile& source : metadata.sources)
+        json["sources"].push_back({{"name", source.name},
+                                   {"format", source.format},
+                                   {"pointCount", source.pointCount},
+                                   {"sizeBytes", source.sizeBytes}});
+    json["tool"] = metadata.tool;
+    json["options"] = metadata.options;
+    std::string text = dump(json);
+    return frameBlock(ByteSpan(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
+}
+
+Result<CloudMetadata> parseMetadata(ByteSpan block) {
+    STIPPLE_TRY(text, unframeBlock(block, "metadata", fileHeaderBytes));
+    Json json = Json::parse(text.begin(), text.end(), nullptr, false);
+    if (json.is_discarded())
+        return Error{ErrorCode::corrupt, "the text is no JSON", "metadata", {}};
+    std::optional<Error> error;
+    Fields fields(json, "", error);
+    CloudMetadata metadata;
+    metadata.name = fields.text("name");
+    metadata.pointCount = fields.count("pointCount");
+    metadata.crs = readCrs(Fields(part(fields, "crs"), "crs", error));
+    Fields grid(part(fields, "grid"), "grid", error);
+    metadata.grid = {grid.numbers("scale"), grid.numbers("offset")};
+    Fields cube(part(fields, "rootCube"), "rootCube", error);
+    metadata.rootCube = {cube.integers("min"), static_cast<int>(cube.integer("bits", 0, maxRootBits))};
+    metadata.spacing = fields.number("spacing");
+    if (fields.find("bounds") != nullptr) {
+        Fields bounds(part(fields, "bounds"), "bounds", error);
+        metadata.bounds.min = bounds.integers("min");
+        metadata.bounds.max = bounds.integers("max");
+    }
+    std::string colour = fields.text("pictureColour");
+    std::size_t colourIndex = 0;
+    while (colourIndex < colourNames.size() && colour != colourNames[colourIndex])
+        ++colourIndex;
+    if (colourIndex == colourNames.size())
+        fields.refuse("pictureColour", "none, rgb or intensity");
+    else
+        metadata.pictureColour = static_cast<PictureColour>(colourIndex);
+    metadata.colourIs8Bit = fields.flag("colourIs8Bit");
+    const Json& attributes = fields.list("attributes");
+    for (std::size_t a = 0; a < attributes.size() && !error; ++a) {
+        Fields attribute(attributes[a], cat("attributes[", a, "]"), error);
+        metadata.schema.attributes.push_back(readAttribute(attribute));
+        metadata.statistics.push_back(readStatistics(attribute));
+    }
+    metadata.pointHash = fields.text("pointHash");
+    const Json& sources = fields.list("sources");
+    for (std::size_t s = 0; s < sources.size() && !error; ++s) {
+        Fields source(sources[s], cat("sources[", s, "]"), error);
+        metadata.sources.push_back({source.text("name"), source.text("format"), source.count("pointCount"),
+                                    source.count("sizeBytes")});
+    }
+    metadata.tool = fields.text("tool");
+    metadata.options = fields.text("options");
+    if (!error)
+        checkWhole(metadata, fields);
+    if (error)
+        return *error;
+    return metadata;
+}
+
+} // namespace stipple

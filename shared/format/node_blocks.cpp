@@ -1,0 +1,174 @@
+#include "shared/base/text.hpp"
+#include "shared/codec/colour_codec.hpp"
+#include "shared/codec/column_codec.hpp"
+#include "shared/codec/position_codec.hpp"
+#include "shared/codec/progressive_order.hpp"
+#include "shared/format/block_frame.hpp"
+#include "shared/format/cloud_file.hpp"
+#include "shared/format/picture_attributes.hpp"
+
+#include <algorithm>
+
+namespace stipple {
+
+namespace {
+
+// 32-bit builds cannot address what a very large node takes.
+Status checkMemory(std::uint64_t pointCount, std::uint64_t bytesPerPoint) {
+    if (pointCount > SIZE_MAX / 2 / bytesPerPoint)
+        return Error{
+            ErrorCode::limitExceeded, "the node is too large for the memory of this program", {}, {}};
+    return {};
+}
+
+// What keeps a claimed number of points within what the bytes justify.
+Status checkEntry(const CloudMetadata& metadata, const NodeEntry& entry) {
+    for (int s = 0; s < strataCount; ++s) {
+        std::uint64_t bytes = entry.strataBytes[static_cast<std::size_t>(s)];
+        if (stratumPoints(entry.pointCount, s) > maxPointsPerByte * bytes)
+            return Error{ErrorCode::corrupt,
+                         cat("stratum ", s, " has ", stratumPoints(entry.pointCount, s), " points in ", bytes,
+                             " bytes"),
+                         {},
+                         {}};
+    }
+    if (entry.key.level > metadata.rootCube.bits ||
+        (entry.pointCount > 0 && metadata.rootCube.nodeBits(entry.key.level) > maxNodeBits))
+        return Error{ErrorCode::corrupt, "a node of this level cannot hold points", {}, {}};
+    return checkMemory(entry.pointCount, 48); // keys, positions and colour while they are being decoded
+}
+
+Status checkSize(ByteSpan bytes, std::uint64_t expected) {
+    if (bytes.size() != expected)
+        return Error{bytes.size() < expected ? ErrorCode::truncated : ErrorCode::invalidArgument,
+                     cat(bytes.size(), " bytes came instead of ", expected),
+                     {},
+                     {}};
+    return {};
+}
+
+Error corrupt(std::string what) {
+    return Error{ErrorCode::corrupt, std::move(what), {}, {}};
+}
+
+Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
+                                 ByteSpan bytes) {
+    STIPPLE_CHECK(checkSize(bytes, entry.strataRange(strata).size));
+    STIPPLE_CHECK(checkEntry(metadata, entry));
+    STIPPLE_CHECK(checkPictureAttributes(metadata));
+    NodePicture picture;
+    if (entry.pointCount == 0)
+        return picture;
+    PositionDecoder positions(entry.pointCount, metadata.rootCube.nodeBits(entry.key.level), strata);
+    auto channels = static_cast<int>(pictureAttributes(metadata).size());
+    ColourDecoder colour(entry.pointCount, channels, strata);
+    std::size_t at = 0;
+    for (int s = 0; s < strata; ++s) {
+        std::size_t size = entry.strataBytes[static_cast<std::size_t>(s)];
+        if (stratumPoints(entry.pointCount, s) == 0) {
+            if (size != 0)
+                return corrupt(cat("stratum ", s, " has bytes but no points"));
+            continue;
+        }
+        std::string name = cat("stratum ", s);
+        STIPPLE_TRY(payload, unframeBlock(bytes.subspan(at, size), name, entry.offsetBytes + at));
+        auto placed = [&](const Error& error) {
+            return error.at(cat(name, ", byte ", entry.offsetBytes + at));
+        };
+        ByteReader reader(payload);
+        if (Status status = positions.decode(s, reader); !status)
+            return placed(status.error());
+        if (channels > 0)
+            if (Status status = colour.decode(s, reader); !status)
+                return placed(status.error());
+        ByteSpan padding = reader.readBytes(reader.remaining());
+        if (std::any_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte != 0; }))
+            return placed(corrupt("bytes are left over"));
+        at += size;
+    }
+    STIPPLE_CHECK(positions.positions(picture.positions));
+    colour.values(picture.colour);
+    return picture;
+}
+
+// From Morton order to progressive order.
+Bytes progressiveColumn(const std::vector<std::uint32_t>& order, const Bytes& sorted, std::size_t size) {
+    Bytes column(sorted.size());
+    auto gather = [&](auto width) {
+        for (std::size_t i = 0; i < order.size(); ++i)
+            std::memcpy(column.data() + i * width, sorted.data() + order[i] * width, width);
+    };
+    switch (size) { // a constant width lets the compiler turn the copy into one move
+    case 1:
+        gather(std::integral_constant<std::size_t, 1>{});
+        break;
+    case 2:
+        gather(std::integral_constant<std::size_t, 2>{});
+        break;
+    case 4:
+        gather(std::integral_constant<std::size_t, 4>{});
+        break;
+    case 8:
+        gather(std::integral_constant<std::size_t, 8>{});
+        break;
+    default:
+        gather(size);
+    }
+    return column;
+}
+
+Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const NodeEntry& entry,
+                                       std::size_t block, ByteSpan bytes) {
+    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
+    if (block >= blocks.size() || entry.attributeBytes.size() != blocks.size())
+        return Error{ErrorCode::invalidArgument, "the cloud has no such block", {}, {}};
+    STIPPLE_CHECK(checkSize(bytes, entry.attributeRange(block).size));
+    STIPPLE_CHECK(checkEntry(metadata, entry));
+    std::vector<Bytes> columns;
+    const auto& attributes = metadata.schema.attributes;
+    for (int a : blocks[block].attributes)
+        STIPPLE_CHECK(checkMemory(entry.pointCount, attributes[static_cast<std::size_t>(a)].size()));
+    if (bytes.empty()) {
+        for (int a : blocks[block].attributes)
+            columns.emplace_back(entry.pointCount * attributes[static_cast<std::size_t>(a)].size());
+        return columns;
+    }
+    STIPPLE_TRY(payload, unframeBlock(bytes, "attribute block", entry.attributeRange(block).offset));
+    ByteReader reader(payload);
+    std::vector<std::uint32_t> order = progressiveOrder(entry.pointCount);
+    for (int a : blocks[block].attributes) {
+        const Attribute& attribute = attributes[static_cast<std::size_t>(a)];
+        auto sorted = decodeColumn(reader, entry.pointCount, attributeTypeSize(attribute.type),
+                                   static_cast<std::size_t>(attribute.components));
+        if (!sorted)
+            return sorted.error().at(cat("attribute \"", attribute.name, "\", block at byte ",
+                                         entry.attributeRange(block).offset));
+        columns.push_back(progressiveColumn(order, *sorted, attribute.size()));
+    }
+    if (reader.remaining() > 0)
+        return corrupt(
+            cat("bytes are left over in the attribute block at byte ", entry.attributeRange(block).offset));
+    return columns;
+}
+
+} // namespace
+
+Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
+                                  ByteSpan bytes) {
+    if (strata < 1 || strata > strataCount)
+        return Error{ErrorCode::invalidArgument, cat("a node has no ", strata, " strata"), {}, {}};
+    auto picture = decodeStrata(metadata, entry, strata, bytes);
+    if (!picture)
+        return picture.error().at("node " + entry.key.text());
+    return picture;
+}
+
+Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
+                                            std::size_t block, ByteSpan bytes) {
+    auto columns = decodeBlock(metadata, entry, block, bytes);
+    if (!columns)
+        return columns.error().at("node " + entry.key.text());
+    return columns;
+}
+
+} // namespace stipple
