@@ -70,7 +70,7 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, std::ui
 }
 
 ColourDecoder::ColourDecoder(std::uint32_t pointCount, int channels, int strata)
-    : pointCount_(pointCount), channels_(channels), spacing_(8u >> (strata - 1)),
+    : pointCount_(pointCount), spacing_(8u >> (strata - 1)),
       planes_(static_cast<std::size_t>(channels),
               std::vector<std::uint16_t>(strataPrefixPoints(pointCount, strata))) {}
 

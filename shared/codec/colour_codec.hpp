@@ -38,7 +38,6 @@ class ColourDecoder {
 
   private:
     std::uint32_t pointCount_;
-    int channels_;
     int decoded_ = 0;
     ColourWidth width_ = ColourWidth::wide;
     std::uint32_t spacing_; // Morton indices between neighbours in planes_

@@ -98,8 +98,9 @@ class Reader final : public CloudReader {
 
     Result<PointBatch> decode(const NodeEntry& entry, ByteSpan bytes) {
         auto partOf = [&](ByteRange range) {
-            std::size_t from = std::min<std::size_t>(range.offset - entry.offsetBytes, bytes.size());
-            return bytes.subspan(from, std::min<std::size_t>(range.size, bytes.size() - from));
+            auto from = std::min<std::uint64_t>(range.offset - entry.offsetBytes, bytes.size());
+            auto size = std::min<std::uint64_t>(range.size, bytes.size() - from);
+            return bytes.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(size));
         };
         STIPPLE_TRY(picture,
                     decodePicture(metadata_, entry, strataCount, partOf(entry.strataRange(strataCount))));

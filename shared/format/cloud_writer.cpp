@@ -75,7 +75,7 @@ struct StoredNode {
     std::array<std::uint32_t, strataCount> strataBytes{};
     std::vector<std::uint32_t> attributeBytes;
     std::uint64_t offset = 0; // in the temporary file
-    std::uint64_t size = 0;
+    std::size_t size = 0;
 };
 
 class Writer final : public CloudWriter {
@@ -105,7 +105,7 @@ class Writer final : public CloudWriter {
             stored.attributeBytes.push_back(static_cast<std::uint32_t>(block.size()));
             STIPPLE_CHECK(blocks_->write(block));
         }
-        stored.size = blocks_->size() - stored.offset;
+        stored.size = static_cast<std::size_t>(blocks_->size() - stored.offset);
         keys_.push_back(node.key);
         stored_.push_back(std::move(stored));
         return {};
