@@ -15,7 +15,8 @@ class SoftwareRenderer {
     static std::unique_ptr<SoftwareRenderer> create(int threads = 0);
     virtual ~SoftwareRenderer() = default;
 
-    // Fills plan.counters.passesRun and passesSkipped. Buffers are kept between calls.
+    // Adds to plan.counters.passesRun and passesSkipped. The picture and all buffers are kept until the next
+    // call. A plan whose sides are not in 1..16384 pixels gives an empty picture.
     virtual const Image& render(FramePlan& plan) = 0;
 };
 

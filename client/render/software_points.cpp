@@ -1,0 +1,324 @@
+#include "client/render/software_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+// The transform is compiled for the baseline and for wider vectors; all give the same bits, because
+// contraction into fused multiply-adds is off. The body is inlined into each.
+#if defined(__x86_64__) && defined(__GNUC__)
+#define STIPPLE_WIDE_VECTORS 1
+#endif
+#define STIPPLE_INLINE inline __attribute__((always_inline))
+
+namespace stipple {
+namespace {
+
+constexpr std::size_t blockPoints = 512;
+
+// Window positions of a block: 1/128-pixel cells (raster_setup.hpp), depth steps, sizes in 1/64 pixel.
+// Points that are not drawn lie at `nowhere`.
+constexpr std::int32_t nowhere = -static_cast<std::int32_t>(positionLimit) * positionCells;
+struct Block {
+    alignas(64) std::array<std::int32_t, blockPoints> x, y, size64;
+    alignas(64) std::array<std::uint32_t, blockPoints> step;
+    alignas(64) std::array<std::uint32_t, blockPoints> pixel; // single pixels only
+};
+
+enum class Sizing { single, fixed, byDistance };
+
+struct Words {
+    const std::uint32_t* position;
+    const std::uint32_t* low; // nullptr: no low words
+};
+
+STIPPLE_INLINE std::int32_t floorToInt(float value) {
+    auto truncated = static_cast<std::int32_t>(value);
+    return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
+}
+STIPPLE_INLINE float clampFloat(float value, float low, float high) {
+    value = value < low ? low : value;
+    return value > high ? high : value;
+}
+
+// One loop without branches over the block, for the vectorizer.
+template <bool Perspective, bool Shifted, bool LowWords, Sizing Size>
+STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, Words words,
+                              std::size_t count, Block& block) {
+    const float ax = node.rowX[0], bx = node.rowX[1], cx = node.rowX[2];
+    const float ay = node.rowY[0], by = node.rowY[1], cy = node.rowY[2];
+    const float ad = node.rowD[0], bd = node.rowD[1], cd = node.rowD[2];
+    const float fx = node.fraction[0], fy = node.fraction[1], fz = node.fraction[2];
+    const std::uint32_t cellX = static_cast<std::uint32_t>(node.cell[0]);
+    const std::uint32_t cellY = static_cast<std::uint32_t>(node.cell[1]);
+    const std::uint32_t cellZ = static_cast<std::uint32_t>(node.cell[2]);
+    const float near = frame.near, far = frame.far;
+    const float centreX = frame.centreX, centreY = frame.centreY;
+    const auto width = static_cast<float>(frame.width), height = static_cast<float>(frame.height);
+    const std::uint32_t nearBits = frame.nearBits;
+    const int depthShift = frame.depthShift;
+    const int positionShift = node.positionShift, coarseShift = node.coarseShift;
+    const std::uint32_t lowMask = (1u << positionShift) - 1;
+    const auto columns = static_cast<std::uint32_t>(frame.width);
+    const auto lastRow = static_cast<std::uint32_t>(frame.height - 1);
+    const std::uint32_t outside = columns * static_cast<std::uint32_t>(frame.height);
+    const float worldSize64 = frame.worldSize64;
+    const auto minSize64 = static_cast<float>(frame.minSize64),
+               maxSize64 = static_cast<float>(frame.maxSize64);
+
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t w0 = words.position[2 * i], w1 = words.position[2 * i + 1];
+        std::uint32_t px = w0 & 0x1FFFFFu;
+        std::uint32_t py = (w0 >> 21) | ((w1 << 10) & 0x1FF800u);
+        std::uint32_t pz = w1 >> 11;
+        if constexpr (LowWords) {
+            const std::uint32_t low = words.low[i];
+            px = (px << positionShift) | (low & lowMask);
+            py = (py << positionShift) | ((low >> 10) & lowMask);
+            pz = (pz << positionShift) | ((low >> 20) & lowMask);
+        }
+        if constexpr (Shifted) {
+            px >>= coarseShift;
+            py >>= coarseShift;
+            pz >>= coarseShift;
+        }
+        const float rx = static_cast<float>(static_cast<std::int32_t>(px - cellX)) - fx;
+        const float ry = static_cast<float>(static_cast<std::int32_t>(py - cellY)) - fy;
+        const float rz = static_cast<float>(static_cast<std::int32_t>(pz - cellZ)) - fz;
+
+        const float distance = (rx * ad + ry * bd) + rz * cd;
+        bool drawn = (distance >= near) & (distance <= far);
+        const float d = drawn ? distance : near;
+        float x = (rx * ax + ry * bx) + rz * cx;
+        float y = (rx * ay + ry * by) + rz * cy;
+        if constexpr (Perspective) {
+            const float inverse = 1.0f / d;
+            x = x * inverse;
+            y = y * inverse;
+        }
+        x = x + centreX;
+        y = y + centreY;
+        block.step[i] = (std::bit_cast<std::uint32_t>(d) - nearBits) >> depthShift;
+        if constexpr (Size == Sizing::single) {
+            // Snapping stays inside its pixel.
+            drawn = drawn & (x >= 0.0f) & (x < width) & (y >= 0.0f) & (y < height);
+            const auto column = static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? x : 0.0f));
+            const auto row = static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? y : 0.0f));
+            const std::uint32_t pixel = (lastRow - row) * columns + column;
+            block.pixel[i] = drawn ? pixel : outside;
+        } else {
+            x = drawn ? x : -positionLimit;
+            block.x[i] = floorToInt(clampFloat(x, -positionLimit, positionLimit) * positionCells);
+            block.y[i] = floorToInt(clampFloat(y, -positionLimit, positionLimit) * positionCells);
+        }
+        if constexpr (Size == Sizing::byDistance) {
+            const float size = worldSize64 * (1.0f / d) + 0.5f;
+            block.size64[i] = static_cast<std::int32_t>(clampFloat(size, minSize64, maxSize64));
+        }
+    }
+}
+
+using Transform = void (*)(const RasterFrame&, const RasterNode&, Words, std::size_t, Block&);
+
+template <bool P, bool S, bool L, Sizing Z>
+void transformBaseline(const RasterFrame& frame, const RasterNode& node, Words words, std::size_t count,
+                       Block& block) {
+    transform<P, S, L, Z>(frame, node, words, count, block);
+}
+
+#ifdef STIPPLE_WIDE_VECTORS
+template <bool P, bool S, bool L, Sizing Z>
+__attribute__((target("avx2"))) void transformAvx2(const RasterFrame& frame, const RasterNode& node,
+                                                   Words words, std::size_t count, Block& block) {
+    transform<P, S, L, Z>(frame, node, words, count, block);
+}
+#endif
+
+template <bool P, bool S, bool L, Sizing Z>
+Transform chosenTransform() {
+#ifdef STIPPLE_WIDE_VECTORS
+    if (__builtin_cpu_supports("avx2"))
+        return transformAvx2<P, S, L, Z>;
+#endif
+    return transformBaseline<P, S, L, Z>;
+}
+
+template <Sizing Z>
+Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
+    bool low = node.positionShift > 0;
+    bool shifted = node.coarseShift > 0;
+    if (frame.perspective)
+        return low       ? chosenTransform<true, true, true, Z>()
+               : shifted ? chosenTransform<true, true, false, Z>()
+                         : chosenTransform<true, false, false, Z>();
+    return low       ? chosenTransform<false, true, true, Z>()
+           : shifted ? chosenTransform<false, true, false, Z>()
+                     : chosenTransform<false, false, false, Z>();
+}
+
+// The cell becomes the smaller of itself and `candidate`.
+template <bool Shared>
+STIPPLE_INLINE void offer(std::uint64_t& cell, std::uint64_t candidate) {
+    if constexpr (Shared) {
+        std::atomic_ref<std::uint64_t> shared(cell);
+        std::uint64_t held = shared.load(std::memory_order_relaxed);
+        while (candidate < held &&
+               !shared.compare_exchange_weak(held, candidate, std::memory_order_relaxed)) {
+        }
+    } else {
+        if (candidate < cell)
+            cell = candidate;
+    }
+}
+
+template <bool Shared>
+void placeSingle(const Block& block, std::size_t count, std::uint64_t index, std::uint64_t* cells) {
+    for (std::size_t i = 0; i < count; ++i)
+        offer<Shared>(cells[block.pixel[i]], (std::uint64_t{block.step[i]} << indexBits) | (index + i));
+}
+
+// Where a point of half size `half` at `at` (both 1/256 pixel; `half` even, `at` odd) begins and ends along
+// an axis: first and last pixel whose centre it covers. Nothing here is ever a tie.
+STIPPLE_INLINE int firstCovered(int at, int half) {
+    return (at - half - 128 + 255) >> 8;
+}
+STIPPLE_INLINE int lastCovered(int at, int half) {
+    return (at + half - 128) >> 8;
+}
+
+// Half the chord of a circle at `away` from its middle, rounded down: exact in double below 2^53.
+STIPPLE_INLINE int halfChord(int half, int away) {
+    return static_cast<int>(std::sqrt(static_cast<double>(half * half - away * away)));
+}
+
+// A square or circle of any size, clipped to the picture.
+template <bool Shared>
+void placeSprite(const RasterFrame& frame, int x, int y, int half, std::uint64_t candidate,
+                 std::uint64_t* cells) {
+    int firstRow = std::max(firstCovered(y, half), 0);
+    int lastRow = std::min(lastCovered(y, half), frame.height - 1);
+    for (int row = firstRow; row <= lastRow; ++row) {
+        int away = std::abs(row * 256 + 128 - y);
+        int reach = frame.circle ? halfChord(half, away) : half;
+        int first = firstCovered(x, reach), last = lastCovered(x, reach);
+        if (away < 128) { // the pixel that holds the point
+            first = std::min(first, x >> 8);
+            last = std::max(last, x >> 8);
+        }
+        first = std::max(first, 0);
+        last = std::min(last, frame.width - 1);
+        std::uint64_t* line =
+            cells + static_cast<std::size_t>(frame.height - 1 - row) * static_cast<std::size_t>(frame.width);
+        for (int column = first; column <= last; ++column)
+            offer<Shared>(line[column], candidate);
+    }
+}
+
+// Points of exactly N pixels, N small: they cover N × N pixels, or those of them inside the circle. Without
+// a branch on the shape, which would be mispredicted for every other point.
+template <bool Shared, bool Circle, int N>
+STIPPLE_INLINE void placeSmall(int x, int y, int column, int row, const RasterFrame& frame,
+                               std::uint64_t candidate, std::uint64_t* cells) {
+    constexpr int half = N * 128;
+    auto width = static_cast<std::ptrdiff_t>(frame.width);
+    std::uint64_t* line = cells + (frame.height - 1 - row) * width + column;
+    std::array<int, N> across;
+    for (int c = 0; c < N; ++c) {
+        int away = (column + c) * 256 + 128 - x;
+        across[static_cast<std::size_t>(c)] = away * away;
+    }
+    for (int r = 0; r < N; ++r, line -= width) {
+        int away = (row + r) * 256 + 128 - y;
+        int left = half * half - away * away;
+        for (int c = 0; c < N; ++c) {
+            // Circles of two pixels and more hold the pixel of their point: its centre is at most 181 away.
+            bool inside = !Circle || across[static_cast<std::size_t>(c)] <= left;
+            offer<Shared>(line[c], inside ? candidate : emptyCell);
+        }
+    }
+}
+static_assert(2 * 128 > 181);
+
+template <bool Shared, bool Circle, int N>
+void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+                     std::uint64_t* cells) {
+    constexpr int half = N * 128;
+    for (std::size_t i = 0; i < count; ++i) {
+        int x = 2 * block.x[i] + 1, y = 2 * block.y[i] + 1;
+        int column = firstCovered(x, half), row = firstCovered(y, half);
+        std::uint64_t candidate = (std::uint64_t{block.step[i]} << indexBits) | (index + i);
+        bool within = static_cast<unsigned>(column) <= static_cast<unsigned>(frame.width - N) &&
+                      static_cast<unsigned>(row) <= static_cast<unsigned>(frame.height - N) &&
+                      frame.width >= N && frame.height >= N;
+        if (within)
+            placeSmall<Shared, Circle, N>(x, y, column, row, frame, candidate, cells);
+        else
+            placeSprite<Shared>(frame, x, y, half, candidate, cells);
+    }
+}
+
+template <bool Shared>
+void placeSprites(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+                  std::uint64_t* cells) {
+    for (std::size_t i = 0; i < count; ++i) {
+        if (block.x[i] == nowhere)
+            continue;
+        int size64 = frame.sizeByDistance ? block.size64[i] : frame.size64;
+        placeSprite<Shared>(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, 2 * size64,
+                            (std::uint64_t{block.step[i]} << indexBits) | (index + i), cells);
+    }
+}
+
+template <bool Shared>
+void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+                std::uint64_t* cells) {
+    switch (frame.size64) {
+    case 2 * sizeSteps:
+        return frame.circle ? placeSmallBlock<Shared, true, 2>(frame, block, count, index, cells)
+                            : placeSmallBlock<Shared, false, 2>(frame, block, count, index, cells);
+    case 3 * sizeSteps:
+        return frame.circle ? placeSmallBlock<Shared, true, 3>(frame, block, count, index, cells)
+                            : placeSmallBlock<Shared, false, 3>(frame, block, count, index, cells);
+    case 4 * sizeSteps:
+        return frame.circle ? placeSmallBlock<Shared, true, 4>(frame, block, count, index, cells)
+                            : placeSmallBlock<Shared, false, 4>(frame, block, count, index, cells);
+    default:
+        return placeSprites<Shared>(frame, block, count, index, cells);
+    }
+}
+
+template <bool Shared>
+void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells) {
+    Block block;
+    bool single = !frame.sizeByDistance && frame.size64 == sizeSteps;
+    Transform transformBlock = single                 ? transformFor<Sizing::single>(frame, *run.raster)
+                               : frame.sizeByDistance ? transformFor<Sizing::byDistance>(frame, *run.raster)
+                                                      : transformFor<Sizing::fixed>(frame, *run.raster);
+    for (std::uint32_t done = 0; done < run.count; done += blockPoints) {
+        std::size_t first = run.first + done;
+        std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
+        Words words{run.node->positionWords.data() + 2 * first,
+                    run.raster->positionShift > 0 ? run.node->positionLowWords.data() + first : nullptr};
+        transformBlock(frame, *run.raster, words, count, block);
+        std::uint64_t index = run.index + done;
+        if (single)
+            placeSingle<Shared>(block, count, index, cells);
+        else if (frame.sizeByDistance)
+            placeSprites<Shared>(frame, block, count, index, cells);
+        else
+            placeFixed<Shared>(frame, block, count, index, cells);
+    }
+}
+
+} // namespace
+
+void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells, bool shared) {
+    if (shared)
+        drawRunImpl<true>(frame, run, cells);
+    else
+        drawRunImpl<false>(frame, run, cells);
+}
+
+} // namespace stipple
