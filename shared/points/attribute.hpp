@@ -19,13 +19,13 @@ std::optional<AttributeType> attributeTypeFromName(std::string_view name);
 struct Attribute {
     std::string name; // unique in a schema
     AttributeType type = AttributeType::u8;
-    int components = 1;      // 1..255; > 1 for undescribed extra bytes and LAS 1.0-1.3 tuples
-    std::string description; // of extra bytes; else empty
-    std::string unit;        // "s", "deg"; empty where unknown
+    int components = 1;        // 1..255; > 1 for undescribed extra bytes and LAS 1.0-1.3 tuples
+    std::string description{}; // of extra bytes; else empty
+    std::string unit{};        // "s", "deg"; empty where unknown
     // value = offset + scale × stored, for described extra bytes and the scaled angle of formats 6-10.
     double scale = 1;
     double offset = 0;
-    std::optional<double> noData; // stored value that means "no value"
+    std::optional<double> noData{}; // stored value that means "no value"
 
     std::size_t size() const { return attributeTypeSize(type) * static_cast<std::size_t>(components); }
     friend bool operator==(const Attribute&, const Attribute&) = default;
