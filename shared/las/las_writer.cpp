@@ -380,7 +380,7 @@ Status FileWriter::finish() {
 Result<std::unique_ptr<Writer>> Writer::create(const std::string& path, const WriterOptions& options) {
     auto writer = std::make_unique<FileWriter>();
     if (Status opened = writer->open(path, options); !opened.ok())
-        return opened.error().where.empty() ? opened.error().at(path) : opened.error();
+        return opened.error().where == path ? opened.error() : opened.error().at(path);
     return std::unique_ptr<Writer>(std::move(writer));
 }
 
