@@ -234,9 +234,13 @@ void IndoorBuilder::furnish(int storey, int index, bool north) {
     }
     put(anyOf(plants_), 0.5, 5.8, random_.uniform(0, 6));
     double eye = floor_ + 1.62;
-    // The middle, or beside it where something stands there.
-    Vec3d wish{roomX_ + 2.9, middleY + (north ? -0.4 : 0.4), eye};
-    scene_.station(wish);
+    // Near the middle, where nothing stands.
+    double side = north ? 1 : -1;
+    std::vector<Vec3d> wish;
+    for (double dy : {-0.4, -1.7, 1.2, 1.9, -2.3})
+        for (double dx : {-0.1, 0.8, -0.9, 2.0})
+            wish.push_back({roomX_ + bay / 2 + dx, middleY + side * dy, eye});
+    scene_.station(std::move(wish));
 }
 
 void IndoorBuilder::furnishCorridor(int storey) {
@@ -250,8 +254,8 @@ void IndoorBuilder::furnishCorridor(int storey) {
         scene_.place({cupboard_, {x + 2.6, corridorTo - 0.32, floor_}, 0, 1, {}});
     }
     for (double x = 4; x < buildingX; x += 10)
-        scene_.station({x, (corridorFrom + corridorTo) / 2, floor_ + 1.65});
-    scene_.station({bay * stairBay + 0.6, corridorTo + 0.9, floor_ + 1.65});
+        scene_.station({Vec3d{x, (corridorFrom + corridorTo) / 2, floor_ + 1.65}});
+    scene_.station({Vec3d{bay * stairBay + 0.6, corridorTo + 0.9, floor_ + 1.65}});
 }
 
 void IndoorBuilder::addOutdoors() {

@@ -266,9 +266,12 @@ std::unique_ptr<const Scene> SceneBuilder::finish() {
         boxes.push_back(box);
     }
     scene_->bvh_ = Bvh(boxes, scene_->byPlace_);
-    for (Vec3d wish : wishes_)
-        if (scene_->distanceToSurface(wish) > 0.45)
-            scene_->stations_.push_back(wish);
+    for (const auto& wish : wishes_) {
+        auto clear = std::find_if(wish.begin(), wish.end(),
+                                  [&](Vec3d p) { return scene_->distanceToSurface(p) > 0.45; });
+        if (clear != wish.end())
+            scene_->stations_.push_back(*clear);
+    }
     return std::move(scene_);
 }
 

@@ -121,13 +121,13 @@ class SceneBuilder {
     void placeOnce(Model model, std::array<Rgb, 2> tints = {});
     void setGround(std::unique_ptr<const Ground> ground);
     const Ground& ground() const { return *scene_->ground_; }
-    // A wish for a station; kept if, when all is built, nothing is within 0.45 m.
-    void station(Vec3d position) { wishes_.push_back(position); }
+    // A wish for a station: when all is built, the first of these positions with nothing within 0.45 m.
+    void station(std::vector<Vec3d> positions) { wishes_.push_back(std::move(positions)); }
     std::unique_ptr<const Scene> finish();
 
   private:
     std::unique_ptr<Scene> scene_;
-    std::vector<Vec3d> wishes_;
+    std::vector<std::vector<Vec3d>> wishes_;
 };
 
 } // namespace stipple::synth

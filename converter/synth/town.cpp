@@ -307,7 +307,7 @@ void TownBuilder::fillPark(Block& block) {
         for (double s : {-1.0, 1.0})
             put(bench_, cu + s * d, cv + s * 1.8, s > 0 ? 0 : pi, 1, {});
     put(lamp_, cu + 4, cv + 4, 0, 0.7, {});
-    scene_.station(ground_->at(cu, cv) + Vec3d{0, 0, 1.7});
+    scene_.station({ground_->at(cu, cv) + Vec3d{0, 0, 1.7}});
 }
 
 void TownBuilder::fillChurch(Block& block) {
@@ -432,11 +432,11 @@ void TownBuilder::placeStations() {
         for (std::size_t i = 0; i < plan_->across().size(); ++i)
             if ((i + j) % 2 == 0) {
                 const Street &a = plan_->across()[i], &b = plan_->along()[j];
-                scene_.station(ground_->at(a.centre + 1.2, b.centre + 0.8) + Vec3d{0, 0, 1.75});
+                scene_.station({ground_->at(a.centre + 1.2, b.centre + 0.8) + Vec3d{0, 0, 1.75}});
             }
     // One house in twelve is scanned inside too.
     for (std::size_t i = 0; i < rooms_.size(); i += 12)
-        scene_.station(rooms_[i]);
+        scene_.station({rooms_[i], rooms_[i] + Vec3d{0.5, -0.4, 0}});
 }
 
 } // namespace
