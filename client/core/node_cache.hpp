@@ -1,0 +1,69 @@
+// What is held of nodes: compressed strata of those that are not complete (so that refining one asks for no
+// byte twice) and the decoded points. Bounded in bytes; the least recently used go first.
+#pragma once
+
+#include "client/core/resident_node.hpp"
+#include "shared/base/bytes.hpp"
+
+#include <compare>
+#include <cstdint>
+#include <list>
+#include <map>
+#include <memory>
+#include <vector>
+
+namespace stipple {
+
+struct CacheKey {
+    std::uint32_t cloud = 0; // id
+    std::uint32_t node = 0;  // index in its hierarchy
+    friend auto operator<=>(const CacheKey&, const CacheKey&) = default;
+};
+
+struct CachedNode {
+    Bytes compressed;                         // of the strata fetched; empty once the node is complete
+    int strataFetched = 0;                    // 0..4
+    bool decodingPicture = false;             // a job is on its way
+    int strataDecoding = 0;                   // of that job
+    std::shared_ptr<const ResidentNode> node; // what can be drawn; null at first
+    bool decodingIntensity = false;
+    std::shared_ptr<const std::vector<float>> intensity; // of all points, until the node has them all
+
+    std::uint64_t sizeBytes() const {
+        return sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) +
+               (intensity ? 4 * intensity->size() : 0);
+    }
+};
+
+class NodeCache {
+  public:
+    CachedNode* find(CacheKey key);   // null if absent; does not count as use
+    CachedNode& obtain(CacheKey key); // adds an empty one if absent
+    // Marks as used in frame `frame`; nothing happens if absent.
+    void touch(CacheKey key, std::uint64_t frame);
+    // To be called when an entry's contents changed: its bytes are counted again.
+    void recount(CacheKey key);
+    // Drops least recently used entries until at most `limitBytes` are held; never one that was used in
+    // frame `frame`. Returns what was dropped.
+    std::vector<CacheKey> evict(std::uint64_t limitBytes, std::uint64_t frame);
+    void erase(CacheKey key);
+    void eraseCloud(std::uint32_t cloud);
+
+    std::uint64_t sizeBytes() const { return bytes_; }
+    std::uint64_t peakBytes() const { return peak_; }
+    std::size_t size() const { return entries_.size(); }
+
+  private:
+    struct Entry {
+        CachedNode node;
+        std::uint64_t bytes = 0, frame = 0;
+        std::list<CacheKey>::iterator use;
+    };
+    std::map<CacheKey, Entry>::iterator drop(std::map<CacheKey, Entry>::iterator at);
+
+    std::map<CacheKey, Entry> entries_;
+    std::list<CacheKey> uses_; // most recent first
+    std::uint64_t bytes_ = 0, peak_ = 0;
+};
+
+} // namespace stipple
