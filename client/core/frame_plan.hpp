@@ -5,13 +5,14 @@
 // Positions are camera-relative in integers (design: "Camera-relative, in integers"). For each node:
 //
 //   p        in-node integer of the point (ResidentNode)
-//   cell     cameraCell: the camera's position in steps from the node's minimum corner, rounded down
-//   fraction cameraFraction: what rounding left, in [0, 1) per axis
+//   cell     cameraCell: the camera's position in steps from the node's minimum corner, rounded down, and
+//            brought to the nearest of 0..2^nodeBits (at most 2^31 - 1) where it lies outside
+//   fraction cameraFraction: what is left of the position: in [0, 1) on axes where the camera is level with
+//            the node, negative below it, larger above it
 //   relative = (float(p - cell) - fraction) * scale        world units, seen from the camera
 //
-// p - cell is exact in 32-bit integers. Where the camera is so far away that `cell` would not fit 30 bits,
-// the plan raises `coarseShift`: p and cell are in units of 2^coarseShift steps and `scale` is multiplied
-// to match; what p loses by this is under 2^-29 of the distance.
+// p - cell is exact in 32-bit integers. p - cell and -fraction never differ in sign outside the node, so
+// nothing cancels: the error is relative to the distance from the camera. coarseShift is 0.
 //
 // Depth: a point at view distance d (along `forward`) in [near, far] has depth log2(d / near) /
 // log2(far / near) in [0, 1]. Points nearer than near or beyond far are not drawn.
@@ -42,13 +43,15 @@ struct ViewTransform {
     // Where distances start. Perspective: the camera's position. Orthographic: that position moved along
     // `forward` (which changes no pixel) so that all content lies in front.
     Vec3d eye;
+
+    friend bool operator==(const ViewTransform&, const ViewTransform&) = default;
 };
 
 struct DrawNode {
     std::shared_ptr<const ResidentNode> node;
     std::uint32_t pointCount = 0;             // draw this prefix; <= node->pointCount
-    std::array<std::int32_t, 3> cameraCell{}; // see above; |cell| < 2^30
-    std::array<float, 3> cameraFraction{};    // [0, 1)
+    std::array<std::int32_t, 3> cameraCell{}; // see above; >= 0
+    std::array<float, 3> cameraFraction{};    // see above
     Vec3d scale;                              // world units per integer (after coarseShift)
     int coarseShift = 0;                      // low bits of p that are dropped; 0 nearly always
     double cameraZ = 0; // world z of the camera, for elevation: z = cameraZ + relative.z

@@ -14,16 +14,26 @@
 namespace stipple {
 
 struct DecodeJob {
-    std::uint32_t cloud = 0; // index of the cloud; a worker keeps its metadata
+    std::uint32_t cloud = 0; // id of the cloud; a worker keeps its metadata
     std::shared_ptr<const CloudMetadata> metadata;
     NodeEntry entry;
-    int strata = strataCount; // 1..4: `picture` holds this many
+    int strata = strataCount; // 0..4: `picture` holds this many; 0: only the intensity is wanted
     Bytes picture;            // entry.strataRange(strata)
     bool wantsIntensity = false;
-    Bytes intensity; // attribute block that holds Intensity; empty if it is the picture colour or unwanted
+    Bytes intensity; // the block that holds Intensity (intensityBlock); empty if it is not wanted
 };
 
+// Decodes and packs. With strata 0 the node has no positions, and pointCount is that of `intensity`, all
+// the node's points in progressive order. Otherwise intensities are those of the prefix.
+// Errors: corrupt or truncated, placed at the node's key. Pure; safe on untrusted bytes.
 Result<ResidentNode> decodeNode(const DecodeJob& job);
+
+// Index of the block with the attribute Intensity for NodeEntry::attributeRange; -1 if there is none
+// because the cloud has no such attribute, or because it is the picture's colour.
+int intensityBlock(const CloudMetadata& metadata);
+
+// `node` with the intensities of its prefix out of those of all its points, and a new id.
+ResidentNode withIntensity(const ResidentNode& node, const std::vector<float>& intensities);
 
 class NodeDecoder {
   public:

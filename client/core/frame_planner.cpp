@@ -1,0 +1,110 @@
+#include "client/core/frame_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace stipple {
+
+namespace {
+
+constexpr double farthestCell = 0x1p61;
+
+struct Difference {
+    double value, error; // a - b == value + error, exactly
+};
+// Two-sum (Knuth, TAOCP vol. 2, 4.2.2).
+Difference exactDifference(double a, double b) {
+    double value = a - b;
+    double bPart = a - value;
+    double aPart = value + bPart;
+    return {value, (a - aPart) - (b - bPart)};
+}
+
+// Mean and deviation of several groups taken together.
+struct Pool {
+    double count = 0, sum = 0, squares = 0, min = HUGE_VAL, max = -HUGE_VAL;
+    void add(double points, const AttributeStatistics& s) {
+        count += points;
+        sum += points * s.mean;
+        squares += points * (s.deviation * s.deviation + s.mean * s.mean);
+        min = std::min(min, s.min);
+        max = std::max(max, s.max);
+    }
+    Range typical() const {
+        double mean = sum / count;
+        double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
+        return {std::max(min, mean - 2 * deviation), std::min(max, mean + 2 * deviation)};
+    }
+};
+
+Range usable(Range range) {
+    if (!(std::isfinite(range.min) && std::isfinite(range.max)))
+        range = {0, 1};
+    // Wide enough to be two different floats.
+    double least = std::max(1e-6, 1e-6 * std::max(std::abs(range.min), std::abs(range.max)));
+    if (range.max - range.min < least)
+        range.max = range.min + std::max(1.0, least);
+    return range;
+}
+
+} // namespace
+
+GridPosition gridPosition(double world, double offset, double scale) {
+    Difference steps = exactDifference(world, offset);
+    double cell = std::floor(steps.value / scale);
+    if (!(std::abs(cell) < farthestCell))
+        return {static_cast<std::int64_t>(std::copysign(farthestCell, steps.value)), 0};
+    // fma: the remainder is exact although the quotient was rounded.
+    double fraction = (std::fma(-cell, scale, steps.value) + steps.error) / scale;
+    double carry = std::floor(fraction);
+    fraction -= carry;
+    if (fraction >= 1) // a tiny negative remainder, rounded up
+        fraction = std::nextafter(1.0, 0.0);
+    return {static_cast<std::int64_t>(cell) + static_cast<std::int64_t>(carry), fraction};
+}
+
+DrawNode planNode(std::shared_ptr<const ResidentNode> node, std::uint32_t pointCount,
+                  const CloudMetadata& metadata, Vec3d eye) {
+    const Grid& grid = metadata.grid;
+    Vec3i corner = metadata.rootCube.nodeMin(node->key);
+    std::int64_t last = std::min(std::int64_t{1} << node->nodeBits, std::int64_t{INT32_MAX});
+    DrawNode draw;
+    for (int axis = 0; axis < 3; ++axis) {
+        auto i = static_cast<std::size_t>(axis);
+        GridPosition at = gridPosition(eye[axis], grid.offset[axis], grid.scale[axis]);
+        std::int64_t cell = at.cell - corner[axis];
+        std::int64_t inside = std::clamp<std::int64_t>(cell, 0, last);
+        draw.cameraCell[i] = static_cast<std::int32_t>(inside);
+        draw.cameraFraction[i] = static_cast<float>(static_cast<double>(cell - inside) + at.fraction);
+    }
+    draw.pointCount = std::min(pointCount, node->pointCount);
+    draw.scale = grid.scale;
+    draw.cameraZ = eye.z;
+    draw.spacing = std::ldexp(metadata.spacing, -node->key.level);
+    draw.node = std::move(node);
+    return draw;
+}
+
+Style resolvedStyle(const Style& style, std::span<const std::shared_ptr<const CloudMetadata>> clouds) {
+    Style resolved = style;
+    Pool intensity;
+    Range elevation{HUGE_VAL, -HUGE_VAL};
+    for (const auto& metadata : clouds) {
+        int found = metadata->schema.find(attribute_names::intensity);
+        auto index = static_cast<std::size_t>(found);
+        if (found >= 0 && index < metadata->statistics.size() && metadata->pointCount > 0)
+            intensity.add(static_cast<double>(metadata->pointCount), metadata->statistics[index]);
+        BoxD box = metadata->worldBounds();
+        if (!box.empty())
+            elevation = {std::min(elevation.min, box.min.z), std::max(elevation.max, box.max.z)};
+    }
+    if (style.intensityRange.min == style.intensityRange.max)
+        resolved.intensityRange = intensity.count > 0 ? intensity.typical() : Range{0, 65535};
+    if (style.elevationRange.min == style.elevationRange.max)
+        resolved.elevationRange = elevation;
+    resolved.intensityRange = usable(resolved.intensityRange);
+    resolved.elevationRange = usable(resolved.elevationRange);
+    return resolved;
+}
+
+} // namespace stipple
