@@ -28,6 +28,8 @@ struct SessionLimits {
     std::uint64_t mergedRequestBytes = 1ull << 20; // a merged request's largest size
 };
 
+inline constexpr std::size_t maxRecentErrors = 32;
+
 using CloudId = std::uint32_t;
 
 enum class CloudStage { opening, ready, failed };
@@ -43,8 +45,12 @@ struct CloudState {
 
 class ViewSession {
   public:
+    // When it is; only pauses between attempts depend on it. Tests bring their own.
+    using Now = std::chrono::steady_clock::time_point (*)();
+
     // `decoder` outlives the session.
-    static std::unique_ptr<ViewSession> create(NodeDecoder& decoder, const SessionLimits& limits = {});
+    static std::unique_ptr<ViewSession> create(NodeDecoder& decoder, const SessionLimits& limits = {},
+                                               Now now = &std::chrono::steady_clock::now);
     virtual ~ViewSession() = default;
 
     virtual CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) = 0;
@@ -54,8 +60,8 @@ class ViewSession {
     // World box of the visible, ready clouds; empty if there are none.
     virtual BoxD contentBounds() const = 0;
 
-    virtual void setViewport(int width, int height) = 0; // pixels, > 0
-    virtual void setCamera(const Camera& camera) = 0;
+    virtual void setViewport(int width, int height) = 0; // pixels, > 0; 1280 × 720 at first
+    virtual void setCamera(const Camera& camera) = 0;    // one that is not usable (isUsable) is passed over
     virtual const Camera& camera() const = 0;
     virtual void setStyle(const Style& style) = 0;
     virtual const Style& style() const = 0;
@@ -66,11 +72,13 @@ class ViewSession {
     // again if anything changed. True: plan() is new and should be drawn. False: the last picture stands.
     virtual bool update(std::chrono::milliseconds wait = {}) = 0;
     virtual const FramePlan& plan() const = 0;
-    // Everything wanted is in plan(), nothing is on its way.
+    // Every cloud is open or failed, everything wanted is in plan() or failed for good, nothing is on its
+    // way.
     virtual bool settled() const = 0;
     virtual SessionCounters counters() const = 0;
-    // The most recent loading errors, newest last; a failed node is asked for again a limited number of
-    // times.
+    // The most recent loading errors (at most maxRecentErrors), newest last, each when it became final: what
+    // may pass is tried LoadQueue::maxAttempts times, a block that does not decode twice. A node that failed
+    // leaves the others as they are; a file that changed fails its cloud.
     virtual std::vector<Error> recentErrors() const = 0;
 };
 

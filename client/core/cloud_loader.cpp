@@ -1,0 +1,130 @@
+#include "client/core/cloud_loader.hpp"
+
+#include "client/core/node_decoder.hpp"
+#include "shared/base/text.hpp"
+
+namespace stipple {
+
+void CloudLoader::advanceOpening() {
+    Result<OpenStep> step = format->open(fetched);
+    if (!step.ok())
+        return fail(step.error());
+    if (ByteRange* needed = std::get_if<ByteRange>(&*step)) {
+        // Asked for again although it was fetched: the file is shorter than it says.
+        if (openingNeeds == *needed)
+            return fail({ErrorCode::truncated,
+                         cat("the file ends before byte ", needed->end(), ", which its header names"), "",
+                         "fetch or convert it again"});
+        openingNeeds = *needed;
+        return;
+    }
+    opened = std::move(std::get<OpenedCloud>(*step));
+    if (source->sizeBytes() > 0 && source->sizeBytes() != opened.fileBytes)
+        return fail({ErrorCode::truncated,
+                     cat("the file has ", source->sizeBytes(), " bytes instead of ", opened.fileBytes), "",
+                     "fetch or convert it again"});
+    Result<Hierarchy> created = Hierarchy::create(opened.metadata, std::move(opened.rootNodes));
+    if (!created.ok())
+        return fail(created.error());
+    hierarchy = std::move(*created);
+    residency.resize(hierarchy.size());
+    intensityBlock = stipple::intensityBlock(*opened.metadata);
+    openingNeeds.reset();
+    state.metadata = opened.metadata;
+    state.stage = CloudStage::ready;
+}
+
+Error CloudLoader::placed(const Error& error) const {
+    // Sources name themselves; the core's own errors name the node.
+    return error.where.starts_with(source->name()) ? error : error.at(source->name());
+}
+
+void CloudLoader::fail(const Error& error) {
+    state.stage = CloudStage::failed;
+    state.error = placed(error);
+    openingNeeds.reset();
+    fetched = {};
+    hierarchy = {};
+    residency.clear();
+}
+
+Status CloudLoader::addChunk(std::uint32_t parent, ByteSpan block) {
+    Result<std::vector<NodeEntry>> nodes = format->parseChunk(opened, block);
+    Status status = nodes.ok() ? hierarchy.add(parent, std::move(*nodes)) : Status(nodes.error());
+    if (!status.ok())
+        hierarchy.markChildrenFailed(parent);
+    residency.resize(hierarchy.size());
+    return status;
+}
+
+void CloudLoader::updateResidency(std::uint32_t node, const CachedNode* cached) {
+    NodeResidency& here = residency[node];
+    bool drawable = cached && cached->node && !(needsIntensity && cached->node->intensity.empty());
+    here.points = drawable ? cached->node->pointCount : 0;
+}
+
+LoadItem CloudLoader::itemFor(LoadKind kind, std::uint64_t id, ByteRange range) const {
+    LoadItem item;
+    item.key = {state.id, kind, id};
+    std::uint64_t here = fetched.headBytes(range);
+    if (here > 0) {
+        ByteSpan head = *fetched.find({range.offset, here});
+        item.head.assign(head.begin(), head.end());
+    }
+    item.range = {range.offset + here, range.size - here};
+    return item;
+}
+
+std::optional<LoadItem> CloudLoader::openingItem() const {
+    if (!opening() || !openingNeeds)
+        return std::nullopt;
+    LoadItem item;
+    item.key = {state.id, LoadKind::opening, openingNeeds->offset};
+    item.range = *openingNeeds;
+    item.mayEndEarly = true;
+    return item;
+}
+
+LoadItem CloudLoader::chunkItem(std::uint32_t parent) const {
+    return itemFor(LoadKind::chunk, parent, hierarchy.node(parent).entry.childChunk);
+}
+
+std::optional<LoadItem> CloudLoader::pictureItem(std::uint32_t node, int strata,
+                                                 const CachedNode* cached) const {
+    int have = cached ? cached->strataFetched : 0;
+    if (have >= strata)
+        return std::nullopt;
+    const NodeEntry& entry = hierarchy.node(node).entry;
+    std::uint64_t from = entry.strataRange(have).end();
+    ByteRange range{from, entry.strataRange(strata).end() - from};
+    LoadItem item;
+    if (decodeFailures.contains(node)) { // what is kept did not decode: fetch anew
+        item.key = {state.id, LoadKind::picture, node};
+        item.range = range;
+    } else {
+        item = itemFor(LoadKind::picture, node, range);
+        // The strata that are wholly here come first, without waiting for the others.
+        for (int s = strata; s > have && item.range.size > 0; --s) {
+            std::uint64_t size = entry.strataRange(s).end() - from;
+            if (size <= item.head.size()) {
+                item.head.resize(size);
+                item.range = {from + size, 0};
+                strata = s;
+            }
+        }
+    }
+    item.fromStrata = have;
+    item.strata = strata;
+    return item;
+}
+
+std::optional<LoadItem> CloudLoader::intensityItem(std::uint32_t node, const CachedNode* cached) const {
+    if (!needsIntensity || (cached && (cached->intensity || cached->decodingIntensity ||
+                                       (cached->node && cached->node->intensity.size() ==
+                                                            hierarchy.node(node).entry.pointCount))))
+        return std::nullopt;
+    const NodeEntry& entry = hierarchy.node(node).entry;
+    return itemFor(LoadKind::intensity, node, entry.attributeRange(static_cast<std::size_t>(intensityBlock)));
+}
+
+} // namespace stipple

@@ -1,0 +1,56 @@
+// One cloud of a session: how far it is opened, its hierarchy, and what of each node can be drawn. It says
+// what to load and takes in what was loaded; asking, decoding and caching are the session's.
+#pragma once
+
+#include "client/core/hierarchy.hpp"
+#include "client/core/load_queue.hpp"
+#include "client/core/node_cache.hpp"
+#include "client/core/node_source.hpp"
+#include "client/core/selection.hpp"
+#include "client/core/view_session.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace stipple {
+
+struct CloudLoader {
+    CloudState state;
+    std::unique_ptr<ByteSource> source;
+    std::unique_ptr<NodeSource> format;
+    FetchedRanges fetched; // while opening, and the first request afterwards: the root's bytes are in it
+    std::optional<ByteRange> openingNeeds;
+    OpenedCloud opened;
+    Hierarchy hierarchy;
+    std::vector<NodeResidency> residency;                  // parallel to hierarchy's nodes
+    std::unordered_map<std::uint32_t, int> decodeFailures; // by node
+    int intensityBlock = -1;                               // of further attributes; -1: none
+    bool needsIntensity = false;
+
+    bool ready() const { return state.stage == CloudStage::ready; }
+    bool opening() const { return state.stage == CloudStage::opening; }
+
+    // Opens as far as the fetched bytes allow; the state afterwards says how far.
+    void advanceOpening();
+    void fail(const Error& error);
+    // The error with the source's name in its place.
+    Error placed(const Error& error) const;
+    // Takes in a chunk with the children of node `parent`.
+    Status addChunk(std::uint32_t parent, ByteSpan block);
+    // Renews what can be drawn of a node from its cache entry (null: none).
+    void updateResidency(std::uint32_t node, const CachedNode* cached);
+
+    // Loads, if any: what is already in the fetched bytes is its `head`, `range` the rest.
+    std::optional<LoadItem> openingItem() const;
+    LoadItem chunkItem(std::uint32_t parent) const;
+    std::optional<LoadItem> pictureItem(std::uint32_t node, int strata, const CachedNode* cached) const;
+    std::optional<LoadItem> intensityItem(std::uint32_t node, const CachedNode* cached) const;
+
+  private:
+    LoadItem itemFor(LoadKind kind, std::uint64_t id, ByteRange range) const;
+};
+
+} // namespace stipple

@@ -1,0 +1,547 @@
+#include "client/core/view_session.hpp"
+
+#include "tests/support/scripted_source.hpp"
+#include "tests/support/small_cloud.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+using namespace stipple;
+using namespace stipple::test;
+
+namespace {
+
+std::chrono::steady_clock::time_point fakeNow;
+std::chrono::steady_clock::time_point readFakeNow() {
+    return fakeNow;
+}
+
+struct Fixture {
+    std::unique_ptr<NodeDecoder> decoder = makeInlineDecoder();
+    std::unique_ptr<ViewSession> session;
+
+    explicit Fixture(const SessionLimits& limits = {}) {
+        session = ViewSession::create(*decoder, limits, readFakeNow);
+        session->setViewport(800, 600);
+    }
+
+    std::shared_ptr<SourceScript> open(Bytes file) {
+        auto script = std::make_shared<SourceScript>();
+        script->file = std::move(file);
+        session->addCloud(std::make_unique<ScriptedSource>(script), "small");
+        return script;
+    }
+
+    // Updates until settled; false if that takes more than `most` updates. Time goes on by a second each.
+    bool settle(int most = 500) {
+        for (int i = 0; i < most && !session->settled(); ++i) {
+            session->update();
+            fakeNow += std::chrono::seconds(1);
+        }
+        return session->settled();
+    }
+
+    // Opens, and looks at everything.
+    std::shared_ptr<SourceScript> openAndFit(const SmallCloud& cloud) {
+        auto script = open(cloud.file);
+        look(cloud);
+        return script;
+    }
+    void look(const SmallCloud& cloud, NamedView view = NamedView::top) {
+        session->setCamera(namedCamera(view, cloud.metadata.worldBounds(), 800.0 / 600));
+    }
+
+    std::uint64_t pointsDrawn() const { return session->plan().counters.pointsDrawn; }
+};
+
+SessionLimits everything() {
+    SessionLimits limits;
+    limits.minNodePixels = 1;
+    return limits;
+}
+
+// Bytes that were asked for more than once.
+std::uint64_t bytesAskedTwice(const std::vector<ByteRange>& reads) {
+    std::vector<ByteRange> sorted = reads;
+    std::sort(sorted.begin(), sorted.end(),
+              [](const ByteRange& a, const ByteRange& b) { return a.offset < b.offset; });
+    std::uint64_t twice = 0, end = 0;
+    for (const ByteRange& range : sorted) {
+        if (range.offset < end)
+            twice += std::min(end, range.end()) - range.offset;
+        end = std::max(end, range.end());
+    }
+    return twice;
+}
+
+const NodeEntry& nodeOf(const SmallCloud& cloud, const std::string& key) {
+    return *std::find_if(cloud.nodes.begin(), cloud.nodes.end(),
+                         [&](const NodeEntry& entry) { return entry.key.text() == key; });
+}
+
+// Big enough that most of it lies beyond the first request.
+const SmallCloud& bigCloud() {
+    static SmallCloud cloud = makeSmallCloud({.levels = 3, .pointsPerNode = 20000});
+    return cloud;
+}
+const SmallCloud& smallCloud() {
+    static SmallCloud cloud = makeSmallCloud();
+    return cloud;
+}
+
+} // namespace
+
+TEST_CASE("a session without clouds is settled after its first update") {
+    Fixture fixture;
+    CHECK(fixture.session->update());
+    CHECK_FALSE(fixture.session->update());
+    CHECK(fixture.session->settled());
+    CHECK(fixture.session->plan().nodes.empty());
+    CHECK(fixture.session->contentBounds().empty());
+}
+
+TEST_CASE("one request of 64 KiB gives the first picture") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    int updates = 0;
+    while (fixture.pointsDrawn() == 0 && ++updates < 20) {
+        fixture.session->update();
+        if (script->reads.size() == 1)
+            script->holdAnswers = false;
+        else
+            script->holdAnswers = true; // whatever is asked for after the first request is not answered
+    }
+    REQUIRE(fixture.pointsDrawn() > 0);
+    CHECK(script->reads[0] == ByteRange{0, 65536});
+    CHECK(fixture.session->counters().bytesReceived == 65536);
+    const FramePlan& plan = fixture.session->plan();
+    REQUIRE(plan.nodes.size() == 1);
+    CHECK(plan.nodes[0].node->key == NodeKey{});
+    CHECK(plan.nodes[0].pointCount >= 20000 / 8);
+    CHECK_FALSE(plan.counters.complete);
+    CHECK_FALSE(fixture.session->settled());
+}
+
+TEST_CASE("a settled session draws every point, and asked for no byte twice") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->recentErrors().empty());
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+    CHECK(fixture.session->plan().nodes.size() == bigCloud().nodes.size());
+    CHECK(fixture.session->plan().counters.complete);
+    CHECK(bytesAskedTwice(script->reads) == 0);
+    std::set<std::uint64_t> ids;
+    for (const DrawNode& node : fixture.session->plan().nodes)
+        ids.insert(node.node->id);
+    CHECK(ids.size() == bigCloud().nodes.size());
+    // What was not wanted (other attributes) was hardly fetched.
+    CHECK(fixture.session->counters().bytesReceived < bigCloud().file.size());
+}
+
+TEST_CASE("a small file is shown without a second request") {
+    SmallCloud cloud = makeSmallCloud({.levels = 2, .pointsPerNode = 300});
+    REQUIRE(cloud.file.size() < 65536);
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(cloud);
+    REQUIRE(fixture.settle());
+    CHECK(script->reads.size() == 1);
+    CHECK(fixture.pointsDrawn() == cloud.metadata.pointCount);
+}
+
+TEST_CASE("a still camera selects nothing, asks for nothing and draws nothing") {
+    Fixture fixture(everything());
+    fixture.openAndFit(smallCloud());
+    REQUIRE(fixture.settle());
+    SessionCounters before = fixture.session->counters();
+    for (int i = 0; i < 10; ++i)
+        CHECK_FALSE(fixture.session->update());
+    fixture.session->setCamera(Camera(fixture.session->camera()));
+    fixture.session->setStyle(Style(fixture.session->style()));
+    CHECK_FALSE(fixture.session->update());
+    SessionCounters after = fixture.session->counters();
+    CHECK(after.selectionsRun == before.selectionsRun);
+    CHECK(after.selectionsSkipped == before.selectionsSkipped + 11);
+    CHECK(after.requests == before.requests);
+    CHECK(after.framesDrawn == before.framesDrawn);
+    CHECK(after.framesSkipped == before.framesSkipped + 11);
+}
+
+TEST_CASE("a change of looks draws again, but selects and asks for nothing") {
+    Fixture fixture(everything());
+    fixture.openAndFit(smallCloud());
+    REQUIRE(fixture.settle());
+    SessionCounters before = fixture.session->counters();
+    Style style;
+    style.sizePixels = 5;
+    fixture.session->setStyle(style);
+    CHECK_FALSE(fixture.session->settled());
+    CHECK(fixture.session->update());
+    CHECK(fixture.session->plan().style.sizePixels == 5);
+    CHECK(fixture.session->counters().selectionsRun == before.selectionsRun);
+    CHECK(fixture.session->counters().requests == before.requests);
+    CHECK(fixture.session->settled());
+}
+
+TEST_CASE("limits of requests and bytes on their way hold") {
+    SessionLimits limits = everything();
+    limits.requestsInFlight = 2;
+    limits.bytesInFlight = 500'000;
+    limits.mergeGapBytes = 0;
+    limits.mergedRequestBytes = 1;
+    Fixture fixture(limits);
+    auto script = fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle(2000));
+    CHECK(script->mostWaiting == 2);
+    CHECK(script->mostBytesWaiting <= 500'000);
+    CHECK(fixture.session->counters().requestsMerged == 0);
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("neighbouring ranges travel as one request") {
+    // Between pictures lie 900 × 4 bytes of attributes that nobody asked for: within the gap that may be
+    // read.
+    SmallCloud cloud = makeSmallCloud({.levels = 3, .pointsPerNode = 900});
+    Fixture fixture(everything());
+    fixture.openAndFit(cloud);
+    REQUIRE(fixture.settle());
+    SessionCounters counters = fixture.session->counters();
+    CHECK(counters.requests <= 3);
+    CHECK(counters.requestsMerged >= 10);
+    CHECK(fixture.pointsDrawn() == cloud.metadata.pointCount);
+}
+
+TEST_CASE("a tight budget draws a prefix, and more budget fetches only what is missing") {
+    SessionLimits limits = everything();
+    limits.pointBudget = 20000 + 6000; // the root, and a prefix of one child
+    Fixture fixture(limits);
+    auto script = fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == 26000);
+    const FramePlan& plan = fixture.session->plan();
+    REQUIRE(plan.nodes.size() == 2);
+    CHECK(plan.nodes[1].pointCount == 6000);
+    CHECK(plan.nodes[1].node->pointCount == 10000); // three strata: half of the node
+    CHECK(plan.counters.nodesOverBudget > 0);
+
+    limits.pointBudget = 1'000'000;
+    fixture.session->setLimits(limits);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+    CHECK(bytesAskedTwice(script->reads) == 0);
+}
+
+TEST_CASE("several clouds share one budget") {
+    SessionLimits limits = everything();
+    limits.pointBudget = 3000;
+    Fixture fixture(limits);
+    fixture.openAndFit(smallCloud());
+    fixture.open(smallCloud().file);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == 3000);
+    CHECK(fixture.session->plan().counters.nodesKnown == 2 * smallCloud().nodes.size());
+}
+
+TEST_CASE("a hidden cloud is not drawn, and comes back without a request") {
+    Fixture fixture(everything());
+    fixture.openAndFit(smallCloud());
+    REQUIRE(fixture.settle());
+    CloudId id = fixture.session->clouds()[0].id;
+    std::uint64_t requests = fixture.session->counters().requests;
+    fixture.session->setVisible(id, false);
+    CHECK(fixture.session->update());
+    CHECK(fixture.session->plan().nodes.empty());
+    CHECK(fixture.session->contentBounds().empty());
+    fixture.session->setVisible(id, true);
+    CHECK(fixture.session->update());
+    CHECK(fixture.pointsDrawn() == smallCloud().metadata.pointCount);
+    CHECK(fixture.session->counters().requests == requests);
+}
+
+TEST_CASE("intensity is fetched when the style asks for it, and kept") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    for (const DrawNode& node : fixture.session->plan().nodes)
+        CHECK(node.node->intensity.empty());
+    Style style;
+    style.colourMode = ColourMode::intensity;
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+    for (const DrawNode& node : fixture.session->plan().nodes) {
+        CHECK(node.node->intensity.size() == node.node->pointCount);
+        CHECK(node.node->colourWords.size() == node.node->pointCount);
+    }
+    const Range& range = fixture.session->plan().style.intensityRange;
+    CHECK(range.min == Approx(12768));
+    CHECK(range.max == Approx(52768));
+    CHECK(bytesAskedTwice(script->reads) == 0);
+
+    std::uint64_t requests = fixture.session->counters().requests;
+    style.colourMode = ColourMode::rgb;
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    style.colourMode = ColourMode::intensity;
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->counters().requests == requests);
+}
+
+TEST_CASE("intensity from the start belongs to the right points") {
+    SmallCloud cloud = makeSmallCloud({.levels = 2, .pointsPerNode = 5000});
+    SmallCloud same = makeSmallCloud({.levels = 2, .pointsPerNode = 5000});
+    auto intensities = [](const SmallCloud& of, bool fromTheStart) {
+        Fixture fixture(everything());
+        Style style;
+        style.colourMode = ColourMode::intensity;
+        if (fromTheStart)
+            fixture.session->setStyle(style);
+        fixture.openAndFit(of);
+        REQUIRE(fixture.settle());
+        fixture.session->setStyle(style);
+        REQUIRE(fixture.settle());
+        std::map<NodeKey, std::vector<float>> values;
+        for (const DrawNode& node : fixture.session->plan().nodes)
+            values[node.node->key] = node.node->intensity;
+        return values;
+    };
+    auto first = intensities(cloud, true);
+    CHECK(first.size() == 5);
+    CHECK(first == intensities(same, false));
+}
+
+TEST_CASE("a cloud whose main colour is intensity needs no further block") {
+    SmallCloud cloud = makeSmallCloud({.levels = 1, .colour = PictureColour::intensity});
+    Fixture fixture(everything());
+    Style style;
+    style.colourMode = ColourMode::intensity;
+    fixture.session->setStyle(style);
+    fixture.openAndFit(cloud);
+    REQUIRE(fixture.settle());
+    REQUIRE(fixture.session->plan().nodes.size() == 1);
+    CHECK(fixture.session->plan().nodes[0].node->intensity.size() == 400);
+}
+
+TEST_CASE("a cloud without intensity is drawn all the same in intensity mode") {
+    SmallCloud cloud = makeSmallCloud({.levels = 2, .withIntensity = false});
+    Fixture fixture(everything());
+    Style style;
+    style.colourMode = ColourMode::intensity;
+    fixture.session->setStyle(style);
+    fixture.openAndFit(cloud);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == cloud.metadata.pointCount);
+    const Range& range = fixture.session->plan().style.intensityRange;
+    CHECK(range.min < range.max);
+}
+
+TEST_CASE("the cache stays within its bytes and evicts what was not used lately") {
+    SessionLimits limits = everything();
+    limits.cacheBytes = 1'000'000; // four nodes of 20,000 points
+    Fixture fixture(limits);
+    fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->plan().counters.nodesOverBudget > 0);
+    BoxD bounds = bigCloud().metadata.worldBounds();
+    for (Vec3d corner : {bounds.min, Vec3d{bounds.max.x, bounds.max.y, bounds.min.z}}) {
+        Camera near;
+        near.target = corner;
+        near.position = corner + Vec3d{0, 0, 40};
+        fixture.session->setCamera(near);
+        REQUIRE(fixture.settle());
+        CHECK(fixture.session->plan().nodes.size() >= 2);
+        CHECK(fixture.session->counters().cacheBytes <= limits.cacheBytes + 50'000);
+    }
+    CHECK(fixture.session->counters().nodesEvicted > 0);
+    CHECK(fixture.session->recentErrors().empty());
+}
+
+TEST_CASE("moving on cancels what no longer matters") {
+    SessionLimits limits = everything();
+    limits.mergedRequestBytes = 1;
+    Fixture fixture(limits);
+    auto script = fixture.openAndFit(bigCloud());
+    for (int i = 0; i < 3; ++i)
+        fixture.session->update();
+    script->holdAnswers = true;
+    fixture.session->update();
+    REQUIRE(script->waiting > 0);
+    Camera away = fixture.session->camera();
+    away.target = away.position + Vec3d{0, 0, 100};
+    fixture.session->setCamera(away);
+    fixture.session->update();
+    CHECK(script->cancelled > 0);
+    CHECK(script->waiting == 0);
+    CHECK(fixture.session->counters().requestsCancelled == static_cast<std::uint64_t>(script->cancelled));
+    script->holdAnswers = false;
+    REQUIRE(fixture.settle());
+    fixture.look(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("a failure that passes is tried again, after a pause") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    int failures = 0;
+    script->failure = [&](ByteRange) -> std::optional<Error> {
+        if (++failures > 2)
+            return std::nullopt;
+        return Error{ErrorCode::networkFailed, "no route", "", ""};
+    };
+    for (int i = 0; i < 5; ++i)
+        fixture.session->update();
+    CHECK(script->reads.size() == 1); // no time went by
+    CHECK_FALSE(fixture.session->settled());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->recentErrors().empty());
+    CHECK(fixture.session->counters().requestsFailed == 2);
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("a network that stays down ends in a failed cloud, not in a wait") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(smallCloud());
+    script->failure = [](ByteRange) { return Error{ErrorCode::networkFailed, "no route", "", ""}; };
+    REQUIRE(fixture.settle());
+    CHECK(script->reads.size() == 4);
+    CloudState state = fixture.session->clouds()[0];
+    CHECK(state.stage == CloudStage::failed);
+    CHECK(state.error.code == ErrorCode::networkFailed);
+    CHECK(state.error.sentence().find("scripted.stipple") != std::string::npos);
+    REQUIRE(fixture.session->recentErrors().size() == 1);
+}
+
+TEST_CASE("nodes that can't be had are recorded; the others are drawn") {
+    SessionLimits limits = everything();
+    limits.mergedRequestBytes = 1;
+    limits.mergeGapBytes = 0;
+    Fixture fixture(limits);
+    auto script = fixture.openAndFit(bigCloud());
+    std::uint64_t lost = nodeOf(bigCloud(), "1-1-1-0").strataRange(4).end() - 1;
+    script->failure = [&](ByteRange range) -> std::optional<Error> {
+        if (range.offset <= lost && lost < range.end())
+            return Error{ErrorCode::ioFailed, "bad sector", "", ""};
+        return std::nullopt;
+    };
+    REQUIRE(fixture.settle(2000));
+    REQUIRE(fixture.session->recentErrors().size() == 1);
+    CHECK(fixture.session->recentErrors()[0].sentence().find("1-1-1-0") != std::string::npos);
+    CHECK(fixture.session->clouds()[0].stage == CloudStage::ready);
+    // Its first stratum may have come; all the others are whole, its children too.
+    CHECK(fixture.pointsDrawn() >= bigCloud().metadata.pointCount - 20000);
+    CHECK(fixture.pointsDrawn() < bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("a node that does not decode is asked for once more, then recorded; the others are drawn") {
+    Fixture fixture(everything());
+    SmallCloud damaged = bigCloud();
+    ByteRange picture = nodeOf(damaged, "2-3-3-0").strataRange(4);
+    for (std::uint64_t i = picture.offset; i < picture.end(); i += 7)
+        damaged.file[i] ^= 0x55;
+    auto script = fixture.openAndFit(damaged);
+    REQUIRE(fixture.settle());
+    REQUIRE(fixture.session->recentErrors().size() == 1);
+    CHECK(fixture.session->recentErrors()[0].sentence().find("2-3-3-0") != std::string::npos);
+    CHECK(fixture.pointsDrawn() == damaged.metadata.pointCount - 20000);
+    CHECK(bytesAskedTwice(script->reads) >= picture.size);
+}
+
+TEST_CASE("a file that changes fails its cloud and frees it") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    for (int i = 0; i < 3; ++i)
+        fixture.session->update();
+    REQUIRE(fixture.session->clouds()[0].stage == CloudStage::ready);
+    script->failure = [](ByteRange) {
+        return Error{ErrorCode::changed, "the file is another one now", "", "open it again"};
+    };
+    REQUIRE(fixture.settle());
+    CloudState state = fixture.session->clouds()[0];
+    CHECK(state.stage == CloudStage::failed);
+    CHECK(state.error.code == ErrorCode::changed);
+    CHECK(fixture.session->plan().nodes.empty());
+    CHECK(fixture.session->counters().cacheBytes == 0);
+    CHECK(script->waiting == 0);
+}
+
+TEST_CASE("removing a cloud cancels its requests and frees all of it") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    fixture.open(smallCloud().file);
+    while (fixture.pointsDrawn() < 3000)
+        fixture.session->update();
+    script->holdAnswers = true;
+    fixture.session->update();
+    CloudId id = fixture.session->clouds()[0].id;
+    std::weak_ptr<const ResidentNode> node = fixture.session->plan().nodes.front().node;
+    fixture.session->removeCloud(id);
+    CHECK(script->destroyed);
+    CHECK(script->waiting == 0);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->clouds().size() == 1);
+    CHECK(fixture.pointsDrawn() == smallCloud().metadata.pointCount);
+    fixture.session->removeCloud(fixture.session->clouds()[0].id);
+    CHECK(fixture.session->counters().cacheBytes == 0);
+    CHECK(fixture.session->plan().nodes.empty());
+    CHECK(fixture.session->update());
+    CHECK_FALSE(fixture.session->update());
+    CHECK(node.expired());
+}
+
+TEST_CASE("a session may end while answers are on their way") {
+    auto script = std::make_shared<SourceScript>();
+    {
+        Fixture fixture(everything());
+        script = fixture.openAndFit(bigCloud());
+        for (int i = 0; i < 3; ++i)
+            fixture.session->update();
+        script->holdAnswers = true;
+        fixture.session->update();
+        CHECK(script->waiting > 0);
+    }
+    CHECK(script->destroyed);
+    CHECK(script->waiting == 0);
+}
+
+TEST_CASE("what is no cloud fails with one sentence") {
+    Bytes file = GENERATE(Bytes{}, Bytes(10, 7), Bytes(100'000, 0), Bytes(64, 255));
+    Fixture fixture;
+    fixture.open(file);
+    REQUIRE(fixture.settle());
+    CloudState state = fixture.session->clouds()[0];
+    CHECK(state.stage == CloudStage::failed);
+    CHECK_FALSE(state.error.sentence().empty());
+}
+
+TEST_CASE("every truncation of a file ends in an error, and settles") {
+    SmallCloud cloud = makeSmallCloud({.levels = 2, .pointsPerNode = 60});
+    for (std::size_t size = 0; size < cloud.file.size(); size += 1 + size / 40) {
+        Fixture fixture(everything());
+        fixture.open(Bytes(cloud.file.begin(), cloud.file.begin() + static_cast<std::ptrdiff_t>(size)));
+        fixture.look(cloud);
+        REQUIRE(fixture.settle());
+        CHECK(fixture.session->clouds()[0].stage == CloudStage::failed);
+        CHECK_FALSE(fixture.session->recentErrors().empty());
+    }
+}
+
+TEST_CASE("whatever bytes are damaged, the session settles with right points or an error") {
+    SmallCloud cloud = makeSmallCloud({.levels = 3, .pointsPerNode = 100});
+    std::mt19937 random(7);
+    for (int round = 0; round < 200; ++round) {
+        Bytes damaged = cloud.file;
+        for (int i = 0; i < 1 + round % 5; ++i)
+            damaged[random() % damaged.size()] ^= static_cast<std::uint8_t>(1 + random() % 255);
+        Fixture fixture(everything());
+        fixture.open(std::move(damaged));
+        fixture.look(cloud);
+        REQUIRE(fixture.settle());
+        bool whole = fixture.pointsDrawn() == cloud.metadata.pointCount;
+        CHECK((whole || !fixture.session->recentErrors().empty()));
+    }
+}
