@@ -1,0 +1,112 @@
+// stipple verify FILE [--against INPUT...]
+#include "converter/build/verify.hpp"
+#include "converter/verbs/interrupt.hpp"
+#include "converter/verbs/metadata_json.hpp"
+#include "shared/cli/progress.hpp"
+#include "shared/cli/verb.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+
+namespace stipple {
+
+namespace {
+struct VerifyArguments {
+    std::string file;
+    std::vector<std::string> inputs;
+    int threads = 0;
+    bool json = false;
+};
+
+cli::Json comparisonJson(const VerifyReport& report) {
+    if (!report.comparison)
+        return nullptr;
+    const Comparison& comparison = *report.comparison;
+    cli::Json json = {{"filePoints", comparison.filePoints},   {"inputPoints", comparison.inputPoints},
+                      {"equalPoints", comparison.equalPoints}, {"changed", comparison.changed},
+                      {"missing", comparison.missing},         {"surplus", comparison.surplus}};
+    json["changedPerAttribute"] = cli::Json::object();
+    for (std::size_t a = 0; a < report.attributeNames.size(); ++a)
+        json["changedPerAttribute"][report.attributeNames[a]] = comparison.changedPerAttribute[a];
+    json["first"] = comparison.first;
+    return json;
+}
+
+cli::Json reportJson(const std::string& file, const VerifyReport& report) {
+    cli::Json json = {{"file", file},
+                      {"passed", report.passed()},
+                      {"bytes", report.fileBytes},
+                      {"nodes", report.nodes},
+                      {"points", report.points},
+                      {"spacedPoints", report.spacedPoints},
+                      {"tooNear", report.tooNear},
+                      {"faultCount", report.faultCount}};
+    json["faults"] = report.faults;
+    json["warnings"] = report.warnings;
+    json["comparison"] = comparisonJson(report);
+    return json;
+}
+
+void printComparison(const VerifyReport& report) {
+    const Comparison& comparison = *report.comparison;
+    fmt::print("against the inputs: {} points in them, {} in the file, {} equal", comparison.inputPoints,
+               comparison.filePoints, comparison.equalPoints);
+    if (comparison.same()) {
+        fmt::print("; every point is there once, with all {} attributes\n", report.attributeNames.size());
+        return;
+    }
+    fmt::print("; {} changed, {} missing, {} surplus\n", comparison.changed, comparison.missing,
+               comparison.surplus);
+    for (std::size_t a = 0; a < report.attributeNames.size(); ++a)
+        if (comparison.changedPerAttribute[a] > 0)
+            fmt::print("  {} differs in {} points\n", report.attributeNames[a],
+                       comparison.changedPerAttribute[a]);
+    for (const std::string& difference : comparison.first)
+        fmt::print("  {}\n", difference);
+}
+
+void printText(const std::string& file, const VerifyReport& report) {
+    for (const std::string& warning : report.warnings)
+        fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& fault : report.faults)
+        fmt::print("fault: {}\n", fault);
+    if (report.faultCount > report.faults.size())
+        fmt::print("and {} more faults\n", report.faultCount - report.faults.size());
+    fmt::print(
+        "{}: {} points in {} nodes, {} bytes; of {} points in inner nodes {} break the minimum distance\n",
+        file, report.points, report.nodes, report.fileBytes, report.spacedPoints, report.tooNear);
+    if (report.comparison)
+        printComparison(report);
+    fmt::print("{}\n", report.passed() ? "passed" : "FAILED");
+}
+
+int runVerify(const VerifyArguments& arguments) {
+    cli::Progress bar(arguments.json);
+    auto report = verifyFile(arguments.file, arguments.inputs, arguments.threads, cli::stopOnInterrupt(),
+                             [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
+                                 bar.update(phase, done, total);
+                             });
+    bar.finish();
+    if (!report)
+        return cli::fail("verify", report.error());
+    if (arguments.json)
+        cli::printJson(reportJson(arguments.file, *report));
+    else
+        printText(arguments.file, *report);
+    return report->passed() ? cli::success : cli::verificationFailed;
+}
+} // namespace
+
+void addVerifyVerb(CLI::App& program, cli::Action& action) {
+    auto arguments = std::make_shared<VerifyArguments>();
+    CLI::App* verb = program.add_subcommand("verify", "Check a .stipple file, alone or against its inputs");
+    verb->add_option("FILE", arguments->file, "The .stipple file")->required();
+    verb->add_option("--against", arguments->inputs,
+                     "LAS files: prove that the file holds exactly their points, every attribute equal");
+    verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
+        ->check(CLI::Range(1, 1024));
+    verb->add_flag("--json", arguments->json, "Print the report as one JSON object; no progress");
+    verb->callback([arguments, &action] { action = [arguments] { return runVerify(*arguments); }; });
+}
+
+} // namespace stipple
