@@ -107,7 +107,7 @@ std::optional<LoadItem> CloudLoader::pictureItem(std::uint32_t node, int strata,
         for (int s = strata; s > have && item.range.size > 0; --s) {
             std::uint64_t size = entry.strataRange(s).end() - from;
             if (size <= item.head.size()) {
-                item.head.resize(size);
+                item.head.resize(static_cast<std::size_t>(size));
                 item.range = {from + size, 0};
                 strata = s;
             }

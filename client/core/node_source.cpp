@@ -25,7 +25,8 @@ std::optional<ByteSpan> FetchedRanges::find(ByteRange range) const {
             continue;
         std::uint64_t skip = range.offset - part.offset;
         if (skip <= part.bytes.size() && range.size <= part.bytes.size() - skip)
-            return ByteSpan(part.bytes).subspan(skip, range.size);
+            return ByteSpan(part.bytes)
+                .subspan(static_cast<std::size_t>(skip), static_cast<std::size_t>(range.size));
     }
     return std::nullopt;
 }
