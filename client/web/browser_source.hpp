@@ -1,0 +1,27 @@
+// A byte source that the browser drives: an address read with fetch, or a File that was dropped on the page.
+// Answers arrive between frames and wait here until pump() delivers them.
+#pragma once
+
+#include "shared/io/byte_source.hpp"
+#include "shared/io/range_answer.hpp"
+
+#include <memory>
+
+namespace stipple::web {
+
+std::unique_ptr<ByteSource> makeFetchSource(const std::string& url);
+// `file` is the page's number for a File of `sizeBytes` bytes; it is closed with the source.
+std::unique_ptr<ByteSource> makeFileSource(std::uint32_t file, const std::string& name,
+                                           std::uint64_t sizeBytes);
+
+// What the page reports about request `request`; unknown (cancelled) requests are ignored.
+// Bytes of the body to read, or -1: none, the request is answered.
+double acceptHeaders(std::uint32_t request, const RangeAnswer& answer);
+// Where `size` body bytes are to be put before finishBody, valid until the next call into the program; null
+// if that many were not expected.
+std::uint8_t* bodyBuffer(std::uint32_t request, double size);
+void finishBody(std::uint32_t request);
+enum class ReadFailure : int { network = 0, shortBody = 1, longBody = 2, fileGone = 3 };
+void failRead(std::uint32_t request, ReadFailure failure, const std::string& detail);
+
+} // namespace stipple::web

@@ -1,0 +1,162 @@
+#include "client/web/decode_messages.hpp"
+
+namespace stipple::web {
+namespace {
+
+constexpr std::uint32_t jobMark = 0x314A4253;    // "SBJ1"
+constexpr std::uint32_t answerMark = 0x31414253; // "SBA1"
+constexpr std::uint32_t maxTextBytes = 1 << 16;
+constexpr std::uint32_t maxPoints = 1u << 28; // three words and a float each still fit the address space
+
+Error damaged(const char* what) {
+    return {ErrorCode::corrupt, what, "decoding worker", "reload the page"};
+}
+
+void writeKey(ByteWriter& out, const NodeKey& key) {
+    out.write(key.level);
+    out.write(key.x);
+    out.write(key.y);
+    out.write(key.z);
+}
+
+NodeKey readKey(ByteReader& in) {
+    NodeKey key;
+    key.level = in.read<std::uint8_t>();
+    key.x = in.read<std::uint32_t>();
+    key.y = in.read<std::uint32_t>();
+    key.z = in.read<std::uint32_t>();
+    return key;
+}
+
+void writeText(ByteWriter& out, const std::string& text) {
+    auto size = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), maxTextBytes));
+    out.write(size);
+    out.writeBytes({reinterpret_cast<const std::uint8_t*>(text.data()), size});
+}
+
+std::string readText(ByteReader& in) {
+    ByteSpan part = in.readBytes(in.read<std::uint32_t>());
+    return {reinterpret_cast<const char*>(part.data()), part.size()};
+}
+
+template <class T>
+ByteSpan bytesOf(const std::vector<T>& values) {
+    return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
+}
+
+} // namespace
+
+Bytes encodeJob(const DecodeJob& job) {
+    ByteWriter out;
+    out.write(jobMark);
+    out.write(job.cloud);
+    writeKey(out, job.entry.key);
+    out.write(job.entry.childMask);
+    out.write(job.entry.pointCount);
+    out.write(job.entry.offsetBytes);
+    for (std::uint32_t size : job.entry.strataBytes)
+        out.write(size);
+    out.write(static_cast<std::uint32_t>(job.entry.attributeBytes.size()));
+    for (std::uint32_t size : job.entry.attributeBytes)
+        out.write(size);
+    out.write(static_cast<std::int32_t>(job.strata));
+    out.write(static_cast<std::uint8_t>(job.wantsIntensity));
+    return out.take();
+}
+
+Result<DecodeJob> decodeJob(ByteSpan message) {
+    ByteReader in(message);
+    DecodeJob job;
+    if (in.read<std::uint32_t>() != jobMark)
+        return damaged("a message is no decoding job");
+    job.cloud = in.read<std::uint32_t>();
+    job.entry.key = readKey(in);
+    job.entry.childMask = in.read<std::uint8_t>();
+    job.entry.pointCount = in.read<std::uint32_t>();
+    job.entry.offsetBytes = in.read<std::uint64_t>();
+    for (std::uint32_t& size : job.entry.strataBytes)
+        size = in.read<std::uint32_t>();
+    std::uint32_t blocks = in.read<std::uint32_t>();
+    if (blocks > in.remaining() / sizeof(std::uint32_t))
+        return damaged("a decoding job names more blocks than it holds");
+    job.entry.attributeBytes.resize(blocks);
+    for (std::uint32_t& size : job.entry.attributeBytes)
+        size = in.read<std::uint32_t>();
+    job.strata = in.read<std::int32_t>();
+    job.wantsIntensity = in.read<std::uint8_t>() != 0;
+    if (!in.ok() || in.remaining() != 0 || job.strata < 1 || job.strata > strataCount)
+        return damaged("a decoding job has the wrong length");
+    return job;
+}
+
+ByteSpan nodeArray(const ResidentNode& node, int index) {
+    switch (index) {
+    case 0:
+        return bytesOf(node.positionWords);
+    case 1:
+        return bytesOf(node.positionLowWords);
+    case 2:
+        return bytesOf(node.colourWords);
+    case 3:
+        return bytesOf(node.intensity);
+    default:
+        return {};
+    }
+}
+
+std::uint8_t* nodeArrayBytes(ResidentNode& node, int index) {
+    return const_cast<std::uint8_t*>(nodeArray(node, index).data());
+}
+
+Bytes encodeAnswer(const Result<ResidentNode>& answer) {
+    ByteWriter out;
+    out.write(answerMark);
+    out.write(static_cast<std::uint8_t>(answer.ok()));
+    if (!answer.ok()) {
+        out.write(static_cast<std::uint8_t>(answer.error().code));
+        writeText(out, answer.error().what);
+        writeText(out, answer.error().where);
+        writeText(out, answer.error().advice);
+        return out.take();
+    }
+    const ResidentNode& node = answer.value();
+    writeKey(out, node.key);
+    out.write(static_cast<std::int32_t>(node.nodeBits));
+    out.write(static_cast<std::int32_t>(node.positionShift));
+    out.write(node.pointCount);
+    out.write(node.totalPoints);
+    out.write(static_cast<std::uint8_t>(!node.colourWords.empty()));
+    out.write(static_cast<std::uint8_t>(!node.intensity.empty()));
+    return out.take();
+}
+
+Result<ResidentNode> decodeAnswer(ByteSpan message) {
+    ByteReader in(message);
+    if (in.read<std::uint32_t>() != answerMark)
+        return damaged("a message is no answer to a decoding job");
+    if (in.read<std::uint8_t>() == 0) {
+        Error error;
+        error.code = static_cast<ErrorCode>(in.read<std::uint8_t>());
+        error.what = readText(in);
+        error.where = readText(in);
+        error.advice = readText(in);
+        return in.ok() && error.code <= ErrorCode::cancelled ? error : damaged("an error message is cut");
+    }
+    ResidentNode node;
+    node.key = readKey(in);
+    node.nodeBits = in.read<std::int32_t>();
+    node.positionShift = in.read<std::int32_t>();
+    node.pointCount = in.read<std::uint32_t>();
+    node.totalPoints = in.read<std::uint32_t>();
+    bool hasColour = in.read<std::uint8_t>() != 0;
+    bool hasIntensity = in.read<std::uint8_t>() != 0;
+    if (!in.ok() || in.remaining() != 0 || node.pointCount > maxPoints)
+        return damaged("an answer to a decoding job has the wrong length");
+    node.positionWords.resize(std::size_t{node.pointCount} * 2);
+    node.positionLowWords.resize(node.positionShift > 0 ? node.pointCount : 0);
+    node.colourWords.resize(hasColour ? node.pointCount : 0);
+    node.intensity.resize(hasIntensity ? node.pointCount : 0);
+    return node;
+}
+
+} // namespace stipple::web

@@ -1,0 +1,68 @@
+// The program of a decoding worker: decodeNode, called from www/src/wasm/decoder_worker.ts. It keeps the
+// metadata of each cloud and the latest answer, whose arrays the worker copies out before the next call.
+#include "client/web/decode_messages.hpp"
+#include "shared/format/cloud_file.hpp"
+
+#include <emscripten/emscripten.h>
+
+#include <map>
+
+using namespace stipple;
+
+namespace {
+
+using SharedMetadata = std::shared_ptr<const CloudMetadata>;
+std::map<std::uint32_t, Result<SharedMetadata>> clouds;
+Bytes answerMessage;
+ResidentNode answerNode;
+
+Result<ResidentNode> decode(ByteSpan message, ByteSpan picture, ByteSpan intensity) {
+    STIPPLE_TRY(job, web::decodeJob(message));
+    auto cloud = clouds.find(job.cloud);
+    if (cloud == clouds.end())
+        return Error{ErrorCode::cancelled, "the cloud was closed", "decoding worker", ""};
+    STIPPLE_TRY(metadata, cloud->second);
+    job.metadata = metadata;
+    job.picture.assign(picture.begin(), picture.end());
+    job.intensity.assign(intensity.begin(), intensity.end());
+    return decodeNode(job);
+}
+
+} // namespace
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE void stipple_describe_cloud(std::uint32_t cloud, const std::uint8_t* at,
+                                                 std::size_t size) {
+    Result<CloudMetadata> parsed = parseMetadata({at, size});
+    clouds.insert_or_assign(
+        cloud, parsed.ok() ? Result<SharedMetadata>(std::make_shared<const CloudMetadata>(std::move(*parsed)))
+                           : Result<SharedMetadata>(parsed.error()));
+}
+
+EMSCRIPTEN_KEEPALIVE void stipple_forget_cloud(std::uint32_t cloud) {
+    clouds.erase(cloud);
+}
+
+// Decodes; returns the size of the answer's message (client/web/decode_messages.hpp).
+EMSCRIPTEN_KEEPALIVE std::size_t stipple_decode(const std::uint8_t* message, std::size_t messageSize,
+                                                const std::uint8_t* picture, std::size_t pictureSize,
+                                                const std::uint8_t* intensity, std::size_t intensitySize) {
+    Result<ResidentNode> node =
+        decode({message, messageSize}, {picture, pictureSize}, {intensity, intensitySize});
+    answerMessage = web::encodeAnswer(node);
+    answerNode = node.ok() ? std::move(*node) : ResidentNode{};
+    return answerMessage.size();
+}
+
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* stipple_answer_message() {
+    return answerMessage.data();
+}
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* stipple_answer_array(int index) {
+    return web::nodeArray(answerNode, index).data();
+}
+EMSCRIPTEN_KEEPALIVE std::size_t stipple_answer_array_size(int index) {
+    return web::nodeArray(answerNode, index).size();
+}
+
+} // extern "C"

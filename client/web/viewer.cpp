@@ -1,0 +1,209 @@
+#include "client/web/viewer.hpp"
+
+#include "client/core/json.hpp"
+#include "client/web/browser_source.hpp"
+#include "client/web/host.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <emscripten/heap.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace stipple::web {
+namespace {
+
+std::optional<NamedView> namedViewOf(std::string_view name) {
+    if (name == "top")
+        return NamedView::top;
+    if (name == "front")
+        return NamedView::front;
+    if (name == "iso")
+        return NamedView::iso;
+    return std::nullopt;
+}
+
+// The same picture at the target's depth under the other projection.
+Camera withProjection(Camera camera, Projection projection) {
+    if (camera.projection == projection)
+        return camera;
+    camera.projection = projection;
+    Vec3d back = camera.position - camera.target;
+    double halfSlope = std::tan(camera.fovYDegrees * std::numbers::pi / 360);
+    if (projection == Projection::orthographic)
+        camera.orthoHeight = 2 * length(back) * halfSlope;
+    else
+        camera.position = camera.target + normalized(back) * (camera.orthoHeight / 2 / halfSlope);
+    return camera;
+}
+
+Error contextError() {
+    return {ErrorCode::unsupported, "this browser gives the page no WebGL2", "",
+            "switch hardware acceleration on, or use another browser"};
+}
+
+} // namespace
+
+Viewer::Viewer() : decoder_(std::make_unique<WorkerDecoder>()), session_(ViewSession::create(*decoder_)) {
+    session_->setViewport(width_, height_);
+}
+
+Result<std::unique_ptr<Viewer>> Viewer::create() {
+    std::unique_ptr<Viewer> viewer(new Viewer);
+    STIPPLE_CHECK(viewer->contextRestored());
+    return viewer;
+}
+
+CloudId Viewer::add(std::unique_ptr<ByteSource> source, const std::string& name) {
+    if (session_->clouds().empty())
+        pendingView_ = NamedView::iso;
+    return session_->addCloud(std::move(source), name);
+}
+
+CloudId Viewer::addUrl(const std::string& url, const std::string& name) {
+    return add(makeFetchSource(url), name);
+}
+
+CloudId Viewer::addFile(std::uint32_t file, const std::string& name, std::uint64_t sizeBytes) {
+    return add(makeFileSource(file, name, sizeBytes), name);
+}
+
+void Viewer::removeCloud(CloudId id) {
+    session_->removeCloud(id);
+    decoder_->forgetCloud(id);
+}
+
+void Viewer::setVisible(CloudId id, bool visible) {
+    session_->setVisible(id, visible);
+}
+
+std::string Viewer::cloudsJson() const {
+    nlohmann::json list = nlohmann::json::array();
+    for (const CloudState& cloud : session_->clouds())
+        list.push_back(toJson(cloud));
+    return jsonText(list);
+}
+
+void Viewer::resize(int width, int height) {
+    width_ = width;
+    height_ = height;
+    session_->setViewport(width, height);
+}
+
+Status Viewer::setCamera(std::string_view json) {
+    STIPPLE_TRY(camera, cameraFromJson(json, session_->camera()));
+    session_->setCamera(camera);
+    pendingView_.reset();
+    return {};
+}
+
+Status Viewer::setStyle(std::string_view json) {
+    STIPPLE_TRY(style, styleFromJson(json, session_->style()));
+    session_->setStyle(style);
+    return {};
+}
+
+Status Viewer::setLimits(std::string_view json) {
+    STIPPLE_TRY(value, parseJson(json, "limits"));
+    STIPPLE_TRY(limits, limitsFromJson(value, session_->limits()));
+    session_->setLimits(limits);
+    return {};
+}
+
+std::string Viewer::cameraJson() const {
+    return jsonText(toJson(session_->camera()));
+}
+std::string Viewer::styleJson() const {
+    return jsonText(toJson(session_->style()));
+}
+std::string Viewer::limitsJson() const {
+    return jsonText(toJson(session_->limits()));
+}
+
+void Viewer::orbit(double dx, double dy) {
+    session_->setCamera(stipple::orbit(session_->camera(), dx, dy, height_));
+}
+void Viewer::pan(double dx, double dy) {
+    session_->setCamera(stipple::pan(session_->camera(), dx, dy, height_));
+}
+void Viewer::zoom(double factor, double x, double y) {
+    session_->setCamera(zoomTo(session_->camera(), factor, x, y, width_, height_));
+}
+
+Status Viewer::showView(const std::string& name) {
+    pendingView_ = namedViewOf(name);
+    if (!pendingView_)
+        return Error{ErrorCode::invalidArgument, "the views are top, front and iso", name, ""};
+    applyPendingView();
+    return {};
+}
+
+Status Viewer::setProjection(const std::string& name) {
+    nlohmann::json change{{"projection", name}};
+    STIPPLE_TRY(camera, cameraFromJson(change, session_->camera()));
+    session_->setCamera(withProjection(session_->camera(), camera.projection));
+    return {};
+}
+
+void Viewer::applyPendingView() {
+    BoxD content = session_->contentBounds();
+    if (!pendingView_ || content.empty())
+        return;
+    session_->setCamera(namedCamera(*pendingView_, content, aspect(), session_->camera().projection));
+    pendingView_.reset();
+}
+
+bool Viewer::frame() {
+    if (!renderer_)
+        return false;
+    bool isNew = session_->update();
+    if (pendingViewIsDue()) {
+        applyPendingView();
+        isNew = session_->update() || isNew;
+    }
+    if (!isNew && !drawAgain_)
+        return false;
+    drawAgain_ = false;
+    drawn_ = session_->plan();
+    Status status = renderer_->draw(drawn_);
+    drawError_ = status.ok() ? std::nullopt : std::optional(status.error());
+    return true;
+}
+
+bool Viewer::settled() const {
+    return !pendingViewIsDue() && session_->settled();
+}
+
+std::string Viewer::countersJson() const {
+    return jsonText({{"frame", toJson(drawn_.counters)},
+                     {"session", toJson(session_->counters())},
+                     {"gpuBytes", renderer_ ? renderer_->gpuBytes() : 0},
+                     {"heapBytes", emscripten_get_heap_size()},
+                     {"decodesPending", decoder_->pending()},
+                     {"settled", settled()}});
+}
+
+std::string Viewer::errorsJson() const {
+    nlohmann::json list = nlohmann::json::array();
+    for (const Error& error : session_->recentErrors())
+        list.push_back(error.sentence());
+    if (drawError_)
+        list.push_back(drawError_->sentence());
+    return jsonText(list);
+}
+
+void Viewer::contextLost() {
+    renderer_.reset();
+}
+
+Status Viewer::contextRestored() {
+    if (!stippleHostCreateContext())
+        return contextError();
+    STIPPLE_TRY(renderer, GlesRenderer::create());
+    renderer_ = std::move(renderer);
+    drawAgain_ = true;
+    return {};
+}
+
+} // namespace stipple::web

@@ -1,0 +1,78 @@
+// The viewer on a page: a ViewSession whose picture a GlesRenderer draws on the canvas's WebGL2 context. The
+// page calls frame() when it was woken or changed something, never otherwise.
+#pragma once
+
+#include "client/core/view_session.hpp"
+#include "client/render/gles_renderer.hpp"
+#include "client/web/worker_decoder.hpp"
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace stipple::web {
+
+class Viewer {
+  public:
+    // Needs the canvas of host.hpp. unsupported: no WebGL2, or a shader that does not compile.
+    static Result<std::unique_ptr<Viewer>> create();
+
+    CloudId addUrl(const std::string& url, const std::string& name);
+    CloudId addFile(std::uint32_t file, const std::string& name, std::uint64_t sizeBytes);
+    void removeCloud(CloudId id);
+    void setVisible(CloudId id, bool visible);
+    // An array of clouds as in client/core/json.hpp.
+    std::string cloudsJson() const;
+
+    void resize(int width, int height); // pixels of the canvas
+    Status setCamera(std::string_view json);
+    Status setStyle(std::string_view json);
+    Status setLimits(std::string_view json);
+    std::string cameraJson() const;
+    std::string styleJson() const;
+    std::string limitsJson() const;
+
+    // Steps of the camera; pixels as in client/core/camera.hpp.
+    void orbit(double dx, double dy);
+    void pan(double dx, double dy);
+    void zoom(double factor, double x, double y);
+    // Shows everything from a named side; remembered until there is something to show.
+    Status showView(const std::string& name);
+    Status setProjection(const std::string& name);
+
+    // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
+    // kept for drawError().
+    bool frame();
+    // Draws the present picture once more, for reading it back.
+    void redraw() { drawAgain_ = true; }
+    bool settled() const;
+    // {"frame":{FrameCounters},"session":{SessionCounters},"gpuBytes":…,"heapBytes":…,
+    // "decodesPending":…,"settled":…}
+    std::string countersJson() const;
+    // The most recent loading and drawing errors, newest last: ["sentence", …].
+    std::string errorsJson() const;
+
+    // The browser took the context away, and gave it back.
+    void contextLost();
+    Status contextRestored();
+
+    WorkerDecoder& decoder() { return *decoder_; }
+
+  private:
+    Viewer();
+    double aspect() const { return static_cast<double>(width_) / height_; }
+    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
+    bool pendingViewIsDue() const { return pendingView_ && !session_->contentBounds().empty(); }
+    void applyPendingView();
+
+    std::unique_ptr<WorkerDecoder> decoder_; // outlives the session
+    std::unique_ptr<ViewSession> session_;
+    std::unique_ptr<GlesRenderer> renderer_;
+    FramePlan drawn_;
+    int width_ = 1, height_ = 1;
+    std::optional<NamedView> pendingView_ = NamedView::iso; // shown as soon as a cloud is ready
+    bool drawAgain_ = false;
+    std::optional<Error> drawError_;
+};
+
+} // namespace stipple::web

@@ -1,0 +1,152 @@
+// What the page calls (www/src/wasm/viewer.ts). One viewer a program. Texts go in as UTF-8 and come back in a
+// buffer that stands until the next call; a call that can fail returns "" or the sentence that says why.
+#include "client/web/browser_source.hpp"
+#include "client/web/viewer.hpp"
+
+#include <emscripten/emscripten.h>
+
+using namespace stipple;
+using web::Viewer;
+
+namespace {
+
+std::unique_ptr<Viewer> viewer;
+std::string text;
+
+const char* give(std::string value) {
+    text = std::move(value);
+    return text.c_str();
+}
+
+const char* give(const Status& status) {
+    return give(status.ok() ? std::string() : status.error().sentence());
+}
+
+} // namespace
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE const char* stipple_create() {
+    Result<std::unique_ptr<Viewer>> created = Viewer::create();
+    if (!created.ok())
+        return give(created.error().sentence());
+    viewer = std::move(*created);
+    return give(std::string());
+}
+EMSCRIPTEN_KEEPALIVE void stipple_dispose() {
+    viewer.reset();
+}
+
+// Clouds.
+EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_url(const char* url, const char* name) {
+    return viewer->addUrl(url, name);
+}
+EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_file(std::uint32_t file, const char* name, double sizeBytes) {
+    return viewer->addFile(file, name, static_cast<std::uint64_t>(sizeBytes));
+}
+EMSCRIPTEN_KEEPALIVE void stipple_remove_cloud(std::uint32_t id) {
+    viewer->removeCloud(id);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_set_visible(std::uint32_t id, int visible) {
+    viewer->setVisible(id, visible != 0);
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_clouds() {
+    return give(viewer->cloudsJson());
+}
+
+// Camera, style, limits.
+EMSCRIPTEN_KEEPALIVE void stipple_resize(int width, int height) {
+    viewer->resize(width, height);
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_set_camera(const char* json) {
+    return give(viewer->setCamera(json));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_set_style(const char* json) {
+    return give(viewer->setStyle(json));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_set_limits(const char* json) {
+    return give(viewer->setLimits(json));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_camera() {
+    return give(viewer->cameraJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_style() {
+    return give(viewer->styleJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_limits() {
+    return give(viewer->limitsJson());
+}
+EMSCRIPTEN_KEEPALIVE void stipple_orbit(double dx, double dy) {
+    viewer->orbit(dx, dy);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_pan(double dx, double dy) {
+    viewer->pan(dx, dy);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_zoom(double factor, double x, double y) {
+    viewer->zoom(factor, x, y);
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_show_view(const char* name) {
+    return give(viewer->showView(name));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_set_projection(const char* name) {
+    return give(viewer->setProjection(name));
+}
+
+// Frames.
+EMSCRIPTEN_KEEPALIVE int stipple_frame() {
+    return viewer->frame() ? 1 : 0;
+}
+EMSCRIPTEN_KEEPALIVE void stipple_redraw() {
+    viewer->redraw();
+}
+EMSCRIPTEN_KEEPALIVE int stipple_settled() {
+    return viewer->settled() ? 1 : 0;
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_counters() {
+    return give(viewer->countersJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_errors() {
+    return give(viewer->errorsJson());
+}
+EMSCRIPTEN_KEEPALIVE void stipple_context_lost() {
+    viewer->contextLost();
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_context_restored() {
+    return give(viewer->contextRestored());
+}
+
+// Answers of the page to reads (client/web/browser_source.hpp). `contentLength` < 0: not said.
+EMSCRIPTEN_KEEPALIVE double stipple_read_headers(std::uint32_t request, int status, const char* contentRange,
+                                                 const char* etag, const char* lastModified,
+                                                 double contentLength) {
+    RangeAnswer answer{status, contentRange, etag, lastModified, std::nullopt};
+    if (contentLength >= 0)
+        answer.contentLength = static_cast<std::uint64_t>(contentLength);
+    return web::acceptHeaders(request, answer);
+}
+EMSCRIPTEN_KEEPALIVE std::uint8_t* stipple_read_buffer(std::uint32_t request, double size) {
+    return web::bodyBuffer(request, size);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_read_done(std::uint32_t request) {
+    web::finishBody(request);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_read_failed(std::uint32_t request, int failure, const char* detail) {
+    web::failRead(request, static_cast<web::ReadFailure>(failure), detail);
+}
+
+// Answers of workers (client/web/worker_decoder.hpp).
+EMSCRIPTEN_KEEPALIVE int stipple_decode_answer(std::uint32_t job, const std::uint8_t* message,
+                                               std::size_t size) {
+    return viewer->decoder().answer(job, {message, size}) ? 1 : 0;
+}
+EMSCRIPTEN_KEEPALIVE std::uint8_t* stipple_decode_array(std::uint32_t job, int index, std::size_t sizeBytes) {
+    return viewer->decoder().arrayBytes(job, index, sizeBytes);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_decode_done(std::uint32_t job) {
+    viewer->decoder().finish(job);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_decode_failed(std::uint32_t job, const char* detail) {
+    viewer->decoder().fail(job, detail);
+}
+
+} // extern "C"
