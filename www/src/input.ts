@@ -1,0 +1,115 @@
+import type { Model } from './model.ts';
+
+/** Pixels of one press of an arrow key. */
+const keyStep = 40;
+const keyZoom = 0.8;
+
+/**
+ * Pointer, wheel, touch and keys on the canvas become steps of the camera. Left drag or one finger orbits; right,
+ * middle or shift drag and two fingers pan; wheel and pinch zoom to the pointer.
+ */
+export function followInput(canvas: HTMLCanvasElement, model: Model): void {
+    const fingers = new Map<number, { x: number; y: number }>();
+
+    const pinch = (): { x: number; y: number; spread: number } => {
+        const [a, b] = [...fingers.values()] as [{ x: number; y: number }, { x: number; y: number }];
+        return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, spread: Math.hypot(a.x - b.x, a.y - b.y) };
+    };
+    const place = (event: PointerEvent | WheelEvent): { x: number; y: number } => {
+        const box = canvas.getBoundingClientRect();
+        return { x: event.clientX - box.left, y: event.clientY - box.top };
+    };
+
+    canvas.addEventListener('pointerdown', (event) => {
+        canvas.setPointerCapture(event.pointerId);
+        canvas.focus({ preventScroll: true });
+        fingers.set(event.pointerId, place(event));
+        event.preventDefault();
+    });
+
+    canvas.addEventListener('pointermove', (event) => {
+        const from = fingers.get(event.pointerId);
+        if (!from) return;
+        const to = place(event);
+        if (fingers.size === 2) {
+            const before = pinch();
+            fingers.set(event.pointerId, to);
+            const after = pinch();
+            model.pan(after.x - before.x, after.y - before.y);
+            if (before.spread > 0 && after.spread > 0) model.zoom(before.spread / after.spread, after.x, after.y);
+            return;
+        }
+        fingers.set(event.pointerId, to);
+        const pans = event.shiftKey || (event.buttons & 1) === 0;
+        if (pans) model.pan(to.x - from.x, to.y - from.y);
+        else model.orbit(to.x - from.x, to.y - from.y);
+    });
+
+    const lift = (event: PointerEvent): void => {
+        fingers.delete(event.pointerId);
+    };
+    canvas.addEventListener('pointerup', lift);
+    canvas.addEventListener('pointercancel', lift);
+    canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+
+    canvas.addEventListener(
+        'wheel',
+        (event) => {
+            event.preventDefault();
+            // Lines and pages as browsers report them, in pixels; a pinch on a touch pad comes with ctrlKey.
+            const pixels = event.deltaY * [1, 16, 400][event.deltaMode]! * (event.ctrlKey ? 5 : 1);
+            const { x, y } = place(event);
+            model.zoom(Math.exp(Math.max(-400, Math.min(400, pixels)) * 0.0015), x, y);
+        },
+        { passive: false },
+    );
+
+    canvas.addEventListener('keydown', (event) => {
+        if (event.ctrlKey || event.altKey || event.metaKey) return;
+        const middle = { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
+        const move = event.shiftKey
+            ? (dx: number, dy: number) => model.pan(dx, dy)
+            : (dx: number, dy: number) => model.orbit(dx, dy);
+        const actions: Record<string, () => void> = {
+            ArrowLeft: () => move(keyStep, 0),
+            ArrowRight: () => move(-keyStep, 0),
+            ArrowUp: () => move(0, keyStep),
+            ArrowDown: () => move(0, -keyStep),
+            '+': () => model.zoom(keyZoom, middle.x, middle.y),
+            '=': () => model.zoom(keyZoom, middle.x, middle.y),
+            '-': () => model.zoom(1 / keyZoom, middle.x, middle.y),
+            '1': () => model.showView('top'),
+            '2': () => model.showView('front'),
+            '3': () => model.showView('iso'),
+            Home: () => model.showView('iso'),
+        };
+        const action = actions[event.key];
+        if (!action) return;
+        event.preventDefault();
+        action();
+    });
+}
+
+/** Files dropped anywhere on the page are opened. `hover` says whether one is held over it. */
+export function followDrops(model: Model, hover: (isOver: boolean) => void): void {
+    let depth = 0;
+    const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;
+    addEventListener('dragenter', (event) => {
+        if (!holdsFiles(event)) return;
+        event.preventDefault();
+        hover(++depth > 0);
+    });
+    addEventListener('dragover', (event) => {
+        if (holdsFiles(event)) event.preventDefault();
+    });
+    addEventListener('dragleave', (event) => {
+        if (holdsFiles(event)) hover(--depth > 0);
+    });
+    addEventListener('drop', (event) => {
+        if (!holdsFiles(event)) return;
+        event.preventDefault();
+        depth = 0;
+        hover(false);
+        for (const file of event.dataTransfer!.files) model.openFile(file);
+    });
+}

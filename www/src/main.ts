@@ -1,0 +1,47 @@
+import { html, render } from 'lit';
+
+import { followDrops, followInput } from './input.ts';
+import { Model, messageOf } from './model.ts';
+import { installTestHook } from './test_hook.ts';
+import type { App } from './ui/app.ts';
+import './ui/app.ts';
+
+async function start(): Promise<void> {
+    const canvas = document.createElement('canvas');
+    canvas.tabIndex = 0;
+    canvas.setAttribute(
+        'aria-label',
+        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2 and 3 show top, front and iso.',
+    );
+    document.body.append(canvas);
+
+    const model = await Model.create(canvas);
+    installTestHook(model);
+    followInput(canvas, model);
+    const layer = document.createElement('div');
+    document.body.append(layer);
+    render(html`<stipple-app .model=${model}></stipple-app>`, layer);
+    const app = layer.querySelector<App>('stipple-app')!;
+    followDrops(model, (isOver) => (app.isDropTarget = isOver));
+
+    await openClouds(model);
+}
+
+/** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
+async function openClouds(model: Model): Promise<void> {
+    const named = new URLSearchParams(location.search).getAll('cloud');
+    named.forEach((address) => model.openAddress(address));
+    await model.loadList();
+    const first = model.listed[0];
+    if (named.length === 0 && first) model.openAddress(first.address, first.name);
+}
+
+function explain(error: unknown): void {
+    const box = document.createElement('p');
+    box.className = 'failure';
+    box.setAttribute('role', 'alert');
+    box.textContent = `Stipple can't start: ${messageOf(error)}`;
+    document.body.replaceChildren(box);
+}
+
+start().catch(explain);

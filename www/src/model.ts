@@ -1,0 +1,246 @@
+import { listClouds, type ListedCloud } from './server_clouds.ts';
+import type { CloudState, Counters, Limits, NamedView, Projection, Style } from './wasm/values.ts';
+import { type StyleChange, Viewer } from './wasm/viewer.ts';
+
+/**
+ * What the page shows and the elements change: the viewer's state as last read, and the frame loop. The loop
+ * runs only after something was changed or arrived; a still picture costs nothing.
+ */
+export class Model extends EventTarget {
+    listed: ListedCloud[] = [];
+    listError = '';
+    clouds: CloudState[] = [];
+    style!: Style;
+    limits!: Limits;
+    projection: Projection = 'perspective';
+    counters!: Counters;
+    /** Sentences for the person, newest last. */
+    notices: string[] = [];
+
+    private viewer!: Viewer;
+    private frameIsDue = false;
+    private reportIsDue = false;
+    private lookAgainTimer: ReturnType<typeof setTimeout> | undefined;
+    private settledWaiters: (() => void)[] = [];
+    private readonly toldErrors = new Set<string>();
+    private readonly addresses = new Map<string, number>(); // address → cloud id
+
+    private constructor(readonly canvas: HTMLCanvasElement) {
+        super();
+    }
+
+    static async create(canvas: HTMLCanvasElement): Promise<Model> {
+        const model = new Model(canvas);
+        model.viewer = await Viewer.create(canvas, () => model.wake());
+        model.read();
+        model.followCanvas();
+        return model;
+    }
+
+    // Clouds
+
+    /** Asks the server what it has; a plain file host has no list, which is no error. */
+    async loadList(): Promise<void> {
+        try {
+            this.listed = await listClouds();
+        } catch (error) {
+            this.listError = messageOf(error);
+        }
+        this.changed();
+    }
+
+    isOpen(address: string): boolean {
+        return this.addresses.has(address);
+    }
+
+    openAddress(address: string, name = address): void {
+        if (this.addresses.has(address)) return;
+        const url = new URL(address, document.baseURI).href;
+        this.addresses.set(address, this.viewer.addUrl(url, name));
+        this.wake();
+    }
+
+    openFile(file: File): void {
+        this.viewer.addFile(file);
+        this.wake();
+    }
+
+    close(id: number): void {
+        this.viewer.removeCloud(id);
+        for (const [address, opened] of this.addresses) if (opened === id) this.addresses.delete(address);
+        this.wake();
+    }
+
+    setVisible(id: number, visible: boolean): void {
+        this.viewer.setVisible(id, visible);
+        this.wake();
+    }
+
+    // Looks
+
+    changeStyle(change: StyleChange): void {
+        this.act(() => this.viewer.setStyle(change));
+    }
+    changeLimits(change: Partial<Limits>): void {
+        this.act(() => this.viewer.setLimits(change));
+    }
+    changeCamera(change: object): void {
+        this.act(() => this.viewer.setCamera(change));
+    }
+    showView(view: NamedView): void {
+        this.act(() => this.viewer.showView(view));
+    }
+    setProjection(projection: Projection): void {
+        this.act(() => this.viewer.setProjection(projection));
+    }
+
+    // Steps of the camera, in CSS pixels of the canvas.
+
+    orbit(dx: number, dy: number): void {
+        this.viewer.orbit(dx * this.pixelRatio, dy * this.pixelRatio);
+        this.wake();
+    }
+    pan(dx: number, dy: number): void {
+        this.viewer.pan(dx * this.pixelRatio, dy * this.pixelRatio);
+        this.wake();
+    }
+    zoom(factor: number, x: number, y: number): void {
+        this.viewer.zoom(factor, x * this.pixelRatio, y * this.pixelRatio);
+        this.wake();
+    }
+
+    // Frames
+
+    /** A frame is due. */
+    wake(): void {
+        if (this.frameIsDue) return;
+        this.frameIsDue = true;
+        requestAnimationFrame(() => this.frame());
+    }
+
+    /** Resolves when everything wanted has arrived and is drawn. */
+    settled(): Promise<void> {
+        return new Promise((resolve) => {
+            this.settledWaiters.push(resolve);
+            this.wake();
+        });
+    }
+
+    readCamera(): object {
+        return this.viewer.camera();
+    }
+    readCounters(): Counters {
+        return this.viewer.counters();
+    }
+
+    /** The picture as it is, drawn once more: rows from the top, four bytes a pixel. */
+    readPixels(): { width: number; height: number; rgba: Uint8Array } {
+        const { width, height } = this.canvas;
+        this.viewer.redraw();
+        this.viewer.frame();
+        const gl = this.canvas.getContext('webgl2')!;
+        const upwards = new Uint8Array(width * height * 4);
+        gl.bindFramebuffer(gl.READ_FRAMEBUFFER, null);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, upwards);
+        const rgba = new Uint8Array(upwards.length);
+        for (let y = 0; y < height; y++)
+            rgba.set(upwards.subarray((height - 1 - y) * width * 4, (height - y) * width * 4), y * width * 4);
+        return { width, height, rgba };
+    }
+
+    notify(sentence: string): void {
+        if (this.notices.at(-1) !== sentence) this.notices = [...this.notices.slice(-3), sentence];
+        this.changed();
+    }
+    dismiss(sentence: string): void {
+        this.notices = this.notices.filter((notice) => notice !== sentence);
+        this.changed();
+    }
+
+    get pixelRatio(): number {
+        return this.canvas.clientWidth > 0 ? this.canvas.width / this.canvas.clientWidth : 1;
+    }
+
+    private frame(): void {
+        this.frameIsDue = false;
+        this.viewer.frame();
+        if (this.viewer.settled()) this.settledWaiters.splice(0).forEach((resolve) => resolve());
+        else this.lookAgain();
+        this.report();
+    }
+
+    /** What failed is tried again after a pause, and no arrival tells when that is over. */
+    private lookAgain(): void {
+        this.lookAgainTimer ??= setTimeout(() => {
+            this.lookAgainTimer = undefined;
+            this.wake();
+        }, 200);
+    }
+
+    /** Tells the elements, at most ten times a second. */
+    private report(): void {
+        if (this.reportIsDue) return;
+        this.reportIsDue = true;
+        setTimeout(() => {
+            this.reportIsDue = false;
+            this.read();
+            this.changed();
+        }, 100);
+    }
+
+    private read(): void {
+        this.style = this.viewer.style();
+        this.limits = this.viewer.limits();
+        this.projection = this.viewer.camera().projection;
+        this.counters = this.viewer.counters();
+        this.clouds = this.viewer.clouds();
+        this.tellErrors();
+    }
+
+    /** Each error once, also where the list of clouds is out of sight. */
+    private tellErrors(): void {
+        const failures = this.clouds.flatMap((cloud) => cloud.error?.sentence ?? []);
+        for (const sentence of [...failures, ...this.viewer.errors()]) {
+            if (this.toldErrors.has(sentence)) continue;
+            this.toldErrors.add(sentence);
+            this.notify(sentence);
+        }
+    }
+
+    private act(change: () => void): void {
+        try {
+            change();
+        } catch (error) {
+            this.notify(messageOf(error));
+        }
+        this.read();
+        this.changed();
+        this.wake();
+    }
+
+    private changed(): void {
+        this.dispatchEvent(new Event('change'));
+    }
+
+    private followCanvas(): void {
+        new ResizeObserver(() => {
+            const { clientWidth, clientHeight } = this.canvas;
+            const ratio = window.devicePixelRatio || 1;
+            this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
+            this.canvas.height = Math.max(1, Math.round(clientHeight * ratio));
+            this.viewer.resize(this.canvas.width, this.canvas.height);
+            // Setting the size clears the canvas: draw before the browser shows it.
+            this.viewer.redraw();
+            this.frame();
+        }).observe(this.canvas);
+        this.canvas.addEventListener('webglcontextlost', (event) => {
+            event.preventDefault();
+            this.viewer.contextLost();
+        });
+        this.canvas.addEventListener('webglcontextrestored', () => this.act(() => this.viewer.contextRestored()));
+    }
+}
+
+export function messageOf(error: unknown): string {
+    return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,43 @@
+import type { Model } from './model.ts';
+import type { Counters } from './wasm/values.ts';
+
+/**
+ * `window.stipple`: the page for programs. Tests and measurements in a browser use it; so may whoever embeds the
+ * page. Everything else goes through the controls.
+ */
+export interface TestHook {
+    /** Resolves when everything that the picture wants has arrived and is drawn. */
+    settled(): Promise<void>;
+    counters(): Counters;
+    /** The fields of client/core/camera.hpp; absent ones stay. Throws the sentence of a bad one. */
+    setCamera(camera: object): void;
+    camera(): object;
+    setStyle(style: object): void;
+    setLimits(limits: object): void;
+    /** Draws once more and reads the canvas back: rows from the top, four bytes a pixel, as base64. */
+    readPixels(): { width: number; height: number; base64: string };
+}
+
+declare global {
+    interface Window {
+        stipple?: TestHook;
+    }
+}
+
+export function installTestHook(model: Model): void {
+    window.stipple = {
+        settled: () => model.settled(),
+        counters: () => model.readCounters(),
+        setCamera: (camera) => model.changeCamera(camera),
+        camera: () => model.readCamera(),
+        setStyle: (style) => model.changeStyle(style),
+        setLimits: (limits) => model.changeLimits(limits),
+        readPixels: () => {
+            const { width, height, rgba } = model.readPixels();
+            let binary = '';
+            for (let at = 0; at < rgba.length; at += 0x8000)
+                binary += String.fromCharCode(...rgba.subarray(at, at + 0x8000));
+            return { width, height, base64: btoa(binary) };
+        },
+    };
+}

@@ -1,0 +1,276 @@
+import './cloud_list.ts';
+import './counters_panel.ts';
+import './look_panel.ts';
+
+import { css, html, type TemplateResult } from 'lit';
+
+import { formatCompact, formatBytes, ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+/** Everything over the canvas: the panel, the counters, the status line, notices. */
+export class App extends ModelElement {
+    static override properties = {
+        ...ModelElement.properties,
+        panelIsOpen: { state: true },
+        countersAreOpen: { state: true },
+        isDropTarget: { attribute: false },
+    };
+    declare panelIsOpen: boolean;
+    declare countersAreOpen: boolean;
+    declare isDropTarget: boolean;
+
+    static override styles = [
+        controlStyles,
+        css`
+            :host {
+                position: fixed;
+                inset: 0;
+                pointer-events: none;
+                display: grid;
+                grid-template-columns: auto 1fr auto;
+                grid-template-rows: 1fr auto;
+                padding: 12px;
+                gap: 12px;
+            }
+            :host > * {
+                pointer-events: auto;
+            }
+            .panel {
+                background: var(--panel);
+                border: 1px solid var(--line);
+                border-radius: 12px;
+                padding: 14px;
+                max-height: 100%;
+                overflow-y: auto;
+                overscroll-behavior: contain;
+                align-self: start;
+                scrollbar-width: thin;
+            }
+            .controls {
+                grid-row: 1 / 3;
+                width: 296px;
+            }
+            .controls.closed {
+                width: auto;
+                padding: 8px 10px;
+            }
+            .body {
+                display: grid;
+                gap: 1.3rem;
+                margin-top: 1rem;
+            }
+            header {
+                display: flex;
+                align-items: center;
+                justify-content: space-between;
+                gap: 0.8rem;
+            }
+            h1 {
+                margin: 0;
+                font-size: 1.05rem;
+                font-weight: 650;
+                letter-spacing: 0.01em;
+            }
+            .quiet {
+                background: none;
+                border-color: transparent;
+                color: var(--muted);
+                padding: 0 0.5rem;
+            }
+            .counters {
+                grid-column: 3;
+                grid-row: 1;
+                width: 250px;
+            }
+            .status {
+                grid-column: 2 / 4;
+                grid-row: 2;
+                justify-self: end;
+                display: flex;
+                align-items: center;
+                gap: 0.4rem;
+                padding: 2px 4px 2px 12px;
+                background: var(--panel);
+                border: 1px solid var(--line);
+                border-radius: 999px;
+                font-size: 0.85rem;
+                font-variant-numeric: tabular-nums;
+                color: var(--muted);
+                white-space: nowrap;
+            }
+            .status button {
+                border-radius: 999px;
+                min-height: 1.7rem;
+            }
+            progress {
+                appearance: none;
+                position: fixed;
+                inset: 0 0 auto 0;
+                width: 100%;
+                height: 3px;
+                border: 0;
+                background: none;
+                pointer-events: none;
+            }
+            progress::-webkit-progress-bar {
+                background: none;
+            }
+            progress::-webkit-progress-value {
+                background: var(--accent);
+                transition: width 150ms;
+            }
+            progress::-moz-progress-bar {
+                background: var(--accent);
+            }
+            .notices {
+                position: fixed;
+                left: 50%;
+                top: 12px;
+                transform: translateX(-50%);
+                width: min(520px, calc(100vw - 24px));
+                display: grid;
+                gap: 8px;
+                pointer-events: none;
+            }
+            .notice {
+                pointer-events: auto;
+                display: grid;
+                grid-template-columns: 1fr auto;
+                gap: 0.6rem;
+                align-items: start;
+                padding: 10px 8px 10px 14px;
+                background: var(--danger-back);
+                border: 1px solid var(--danger);
+                border-radius: 10px;
+                overflow-wrap: anywhere;
+            }
+            .drop {
+                position: fixed;
+                inset: 12px;
+                display: grid;
+                place-items: center;
+                border: 2px dashed var(--accent);
+                border-radius: 16px;
+                background: rgb(24 26 30 / 0.75);
+                font-size: 1.2rem;
+                pointer-events: none;
+            }
+            @media (max-width: 640px) {
+                :host {
+                    grid-template-columns: 1fr;
+                    grid-template-rows: 1fr auto auto;
+                    padding: 8px;
+                    gap: 8px;
+                }
+                .controls {
+                    grid-row: 3;
+                    grid-column: 1;
+                    width: 100%;
+                    max-height: 52vh;
+                    align-self: end;
+                }
+                .controls.closed {
+                    width: 100%;
+                }
+                .counters {
+                    grid-column: 1;
+                    grid-row: 1;
+                    justify-self: end;
+                    max-height: 40vh;
+                }
+                .status {
+                    grid-column: 1;
+                    grid-row: 2;
+                }
+            }
+            @media (prefers-reduced-motion: reduce) {
+                * {
+                    transition: none !important;
+                }
+            }
+        `,
+    ];
+
+    constructor() {
+        super();
+        this.panelIsOpen = !matchMedia('(max-width: 640px)').matches;
+        this.countersAreOpen = false;
+        this.isDropTarget = false;
+    }
+
+    override render(): TemplateResult {
+        return html`${this.renderProgress()} ${this.renderControls()}
+            ${this.countersAreOpen
+                ? html`<aside class="panel counters" aria-label="Counters">
+                      <stipple-counters .model=${this.model}></stipple-counters>
+                  </aside>`
+                : ''}
+            ${this.renderStatus()}
+            <div class="notices">
+                ${this.model.notices.map(
+                    (notice) =>
+                        html`<div class="notice" role="alert">
+                            <span>${notice}</span>
+                            <button
+                                class="quiet"
+                                aria-label="Dismiss"
+                                @click=${() => this.model.dismiss(notice)}
+                            >
+                                ✕
+                            </button>
+                        </div>`,
+                )}
+            </div>
+            ${this.isDropTarget ? html`<div class="drop">Drop a .stipple file to open it</div>` : ''}`;
+    }
+
+    private renderControls(): TemplateResult {
+        return html`<section class="panel controls ${this.panelIsOpen ? '' : 'closed'}" aria-label="Controls">
+            <header>
+                <h1>Stipple</h1>
+                <button
+                    class="quiet"
+                    aria-expanded=${this.panelIsOpen}
+                    aria-controls="body"
+                    @click=${() => (this.panelIsOpen = !this.panelIsOpen)}
+                >
+                    ${this.panelIsOpen ? 'Hide' : 'Controls'}
+                </button>
+            </header>
+            <div class="body" id="body" ?hidden=${!this.panelIsOpen}>
+                <stipple-clouds .model=${this.model}></stipple-clouds>
+                <stipple-look .model=${this.model}></stipple-look>
+            </div>
+        </section>`;
+    }
+
+    private renderStatus(): TemplateResult {
+        const { frame, session } = this.model.counters;
+        return html`<div class="status">
+            <span>${formatCompact(Number(frame['pointsDrawn']))} points</span>
+            <span aria-hidden="true">·</span>
+            <span>${formatBytes(session['bytesReceived']!)} fetched</span>
+            <button
+                class="quiet"
+                aria-expanded=${this.countersAreOpen}
+                @click=${() => (this.countersAreOpen = !this.countersAreOpen)}
+            >
+                Counters
+            </button>
+        </div>`;
+    }
+
+    /** How much of what the picture wants is drawn; gone when all is. */
+    private renderProgress(): TemplateResult | string {
+        const { frame, settled } = this.model.counters;
+        if (settled) return '';
+        const wanted = Math.max(1, Number(frame['nodesSelected']));
+        return html`<progress
+            aria-label="Loading"
+            max=${wanted}
+            .value=${Number(frame['nodesDrawn'])}
+        ></progress>`;
+    }
+}
+
+customElements.define('stipple-app', App);

@@ -1,0 +1,135 @@
+import { css, html, type TemplateResult } from 'lit';
+
+import type { CloudState } from '../wasm/values.ts';
+import { formatCompact, formatCount, ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+/** The clouds that are open, those that the server offers besides, and the ways to open more. */
+export class CloudList extends ModelElement {
+    static override styles = [
+        controlStyles,
+        css`
+            ul {
+                list-style: none;
+                margin: 0;
+                padding: 0;
+                display: grid;
+                gap: 0.4rem;
+            }
+            li {
+                display: grid;
+                grid-template-columns: auto 1fr auto;
+                align-items: center;
+                gap: 0.6rem;
+                padding: 0.45rem 0.45rem 0.45rem 0.6rem;
+                background: var(--raised);
+                border-radius: 8px;
+            }
+            li.failed {
+                background: var(--danger-back);
+            }
+            .offer {
+                display: grid;
+                grid-template-columns: 1fr auto;
+                width: 100%;
+                text-align: left;
+                align-items: center;
+                padding: 0.5rem 0.6rem;
+                border-style: dashed;
+                background: none;
+                border-radius: 8px;
+            }
+            .name {
+                overflow-wrap: anywhere;
+            }
+            small {
+                display: block;
+                color: var(--muted);
+            }
+            .failed small {
+                color: var(--danger);
+                overflow-wrap: anywhere;
+            }
+            .close {
+                width: 1.8rem;
+                min-height: 1.8rem;
+                padding: 0;
+                background: none;
+                border-color: transparent;
+                color: var(--muted);
+            }
+            .open {
+                width: 100%;
+                margin-top: 0.5rem;
+            }
+            p {
+                margin: 0.2rem 0 0;
+                color: var(--muted);
+            }
+            input[type='file'] {
+                display: none;
+            }
+        `,
+    ];
+
+    override render(): TemplateResult {
+        const { clouds, listed } = this.model;
+        const offers = listed.filter((cloud) => !this.model.isOpen(cloud.address));
+        return html`<h2>Clouds</h2>
+            <ul>
+                ${clouds.map((cloud) => this.renderCloud(cloud))}
+                ${offers.map(
+                    (cloud) =>
+                        html`<button
+                            class="offer"
+                            @click=${() => this.model.openAddress(cloud.address, cloud.name)}
+                        >
+                            <span class="name">${cloud.name}</span>
+                            <small>${formatCompact(cloud.pointCount)} points</small>
+                        </button>`,
+                )}
+            </ul>
+            ${clouds.length + offers.length === 0
+                ? html`<p>${this.model.listError || 'Open a .stipple file, or drop one anywhere on the page.'}</p>`
+                : ''}
+            <input type="file" id="file" accept=".stipple" multiple @change=${this.pick} />
+            <button class="open" @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#file')!.click()}>
+                Open a file…
+            </button>`;
+    }
+
+    private renderCloud(cloud: CloudState): TemplateResult {
+        return html`<li class=${cloud.stage}>
+            <input
+                type="checkbox"
+                aria-label=${`Show ${cloud.name}`}
+                .checked=${cloud.visible}
+                ?disabled=${cloud.stage === 'failed'}
+                @change=${(event: Event) =>
+                    this.model.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
+            />
+            <div>
+                <span class="name">${cloud.name}</span>
+                ${cloud.stage === 'failed'
+                    ? html`<small>${cloud.error?.sentence}</small>`
+                    : html`<small title=${cloud.crs ?? ''}>${this.describe(cloud)}</small>`}
+            </div>
+            <button class="close" aria-label=${`Close ${cloud.name}`} @click=${() => this.model.close(cloud.id)}>
+                ✕
+            </button>
+        </li>`;
+    }
+
+    private describe(cloud: CloudState): string {
+        if (cloud.stage === 'opening') return 'opening…';
+        return `${formatCount(cloud.pointCount ?? 0)} points${cloud.crs ? ` · ${cloud.crs}` : ''}`;
+    }
+
+    private pick(event: Event): void {
+        const input = event.target as HTMLInputElement;
+        for (const file of input.files ?? []) this.model.openFile(file);
+        input.value = '';
+    }
+}
+
+customElements.define('stipple-clouds', CloudList);

@@ -1,0 +1,198 @@
+import { css, html, type TemplateResult } from 'lit';
+
+import type { Style } from '../wasm/values.ts';
+import { choice, select, slider } from './fields.ts';
+import { formatCompact, ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+const gradients: [Style['gradient'], string][] = [
+    ['viridis', 'Viridis'],
+    ['turbo', 'Turbo'],
+    ['inferno', 'Inferno'],
+    ['spectral', 'Spectral'],
+    ['terrain', 'Terrain'],
+    ['grey', 'Grey'],
+];
+
+/** How the clouds are looked at: view, points, colour, light. */
+export class LookPanel extends ModelElement {
+    static override styles = [
+        controlStyles,
+        css`
+            :host {
+                display: grid;
+                gap: 1.3rem;
+            }
+            .views {
+                display: grid;
+                grid-template-columns: repeat(3, 1fr);
+                gap: 0.4rem;
+            }
+            .colour {
+                width: 100%;
+                height: 2rem;
+                padding: 2px;
+                background: var(--raised);
+                border: 1px solid var(--line);
+                border-radius: 6px;
+            }
+        `,
+    ];
+
+    override render(): TemplateResult {
+        return html`${this.renderView()} ${this.renderPoints()} ${this.renderColour()} ${this.renderLight()}`;
+    }
+
+    private renderView(): TemplateResult {
+        const { model } = this;
+        return html`<fieldset>
+            <legend>View</legend>
+            <div class="views">
+                <button @click=${() => model.showView('top')}>Top</button>
+                <button @click=${() => model.showView('front')}>Front</button>
+                <button @click=${() => model.showView('iso')}>Iso</button>
+            </div>
+            ${choice(
+                'Projection',
+                'projection',
+                model.projection,
+                [
+                    ['perspective', 'Persp.'],
+                    ['orthographic', 'Ortho.'],
+                ],
+                (projection) => model.setProjection(projection),
+            )}
+        </fieldset>`;
+    }
+
+    private renderPoints(): TemplateResult {
+        const { style, limits } = this.model;
+        const isFixed = style.sizeMode === 'fixed';
+        return html`<fieldset>
+            <legend>Points</legend>
+            ${slider(
+                'Budget',
+                limits.pointBudget,
+                { min: 1e4, max: 2e7, logarithmic: true, digits: 2 },
+                formatCompact(limits.pointBudget),
+                (pointBudget) => this.model.changeLimits({ pointBudget }),
+            )}
+            ${choice(
+                'Size in',
+                'size-mode',
+                style.sizeMode,
+                [
+                    ['fixed', 'Pixels'],
+                    ['world', 'World'],
+                ],
+                (sizeMode) => this.model.changeStyle({ sizeMode }),
+            )}
+            ${isFixed
+                ? slider(
+                      'Size',
+                      style.sizePixels,
+                      { min: 1, max: 20, logarithmic: true, digits: 2 },
+                      `${style.sizePixels} px`,
+                      (sizePixels) => this.model.changeStyle({ sizePixels }),
+                  )
+                : slider(
+                      'Size',
+                      style.sizeWorld,
+                      { min: 0.001, max: 10, logarithmic: true, digits: 2 },
+                      String(style.sizeWorld),
+                      (sizeWorld) => this.model.changeStyle({ sizeWorld }),
+                  )}
+            ${choice(
+                'Shape',
+                'shape',
+                style.shape,
+                [
+                    ['circle', 'Circle'],
+                    ['square', 'Square'],
+                ],
+                (shape) => this.model.changeStyle({ shape }),
+            )}
+        </fieldset>`;
+    }
+
+    private renderColour(): TemplateResult {
+        const { style } = this.model;
+        return html`<fieldset>
+            <legend>Colour</legend>
+            ${select(
+                'Colour by',
+                style.colourMode,
+                [
+                    ['rgb', 'RGB'],
+                    ['intensity', 'Intensity'],
+                    ['elevation', 'Elevation'],
+                ],
+                (colourMode) => this.model.changeStyle({ colourMode }),
+            )}
+            ${style.colourMode === 'rgb'
+                ? ''
+                : select('Gradient', style.gradient, gradients, (gradient) =>
+                      this.model.changeStyle({ gradient }),
+                  )}
+            <label class="row">
+                <span>Background</span>
+                <input
+                    class="colour"
+                    type="color"
+                    .value=${hexOf(style.background)}
+                    @input=${(event: Event) =>
+                        this.model.changeStyle({
+                            background: bytesOf((event.target as HTMLInputElement).value),
+                        })}
+                />
+            </label>
+        </fieldset>`;
+    }
+
+    private renderLight(): TemplateResult {
+        const { edl } = this.model.style;
+        return html`<fieldset>
+            <legend>Eye-dome lighting</legend>
+            <label class="row">
+                <span>Shade</span>
+                <span>
+                    <input
+                        type="checkbox"
+                        aria-label="Eye-dome lighting"
+                        .checked=${edl.enabled}
+                        @change=${(event: Event) =>
+                            this.model.changeStyle({
+                                edl: { enabled: (event.target as HTMLInputElement).checked },
+                            })}
+                    />
+                </span>
+            </label>
+            ${slider(
+                'Strength',
+                edl.strength,
+                { min: 0, max: 2, digits: 2 },
+                String(edl.strength),
+                (strength) => this.model.changeStyle({ edl: { strength } }),
+                !edl.enabled,
+            )}
+            ${slider(
+                'Radius',
+                edl.radiusPixels,
+                { min: 0.5, max: 5, digits: 2 },
+                `${edl.radiusPixels} px`,
+                (radiusPixels) => this.model.changeStyle({ edl: { radiusPixels } }),
+                !edl.enabled,
+            )}
+        </fieldset>`;
+    }
+}
+
+function hexOf(bytes: [number, number, number]): string {
+    return `#${bytes.map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
+}
+function bytesOf(hex: string): [number, number, number] {
+    const value = Number.parseInt(hex.slice(1), 16);
+    return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
+}
+
+customElements.define('stipple-look', LookPanel);

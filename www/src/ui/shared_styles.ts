@@ -1,0 +1,141 @@
+import { css } from 'lit';
+
+/** Controls as every panel has them. */
+export const controlStyles = css`
+    :host {
+        display: block;
+        color: var(--text);
+    }
+    *,
+    *::before,
+    *::after {
+        box-sizing: border-box;
+    }
+    [hidden] {
+        display: none !important;
+    }
+    h2,
+    legend {
+        margin: 0 0 0.6rem;
+        padding: 0;
+        font-size: 0.75rem;
+        font-weight: 600;
+        letter-spacing: 0.07em;
+        text-transform: uppercase;
+        color: var(--muted);
+    }
+    fieldset {
+        border: 0;
+        margin: 0;
+        padding: 0;
+        min-width: 0;
+    }
+    .row {
+        display: grid;
+        grid-template-columns: 5.8rem 1fr;
+        align-items: center;
+        gap: 0.5rem;
+        min-height: 2rem;
+        margin-top: 0.35rem;
+    }
+    .value {
+        display: grid;
+        grid-template-columns: 1fr 3.6rem;
+        align-items: center;
+        gap: 0.5rem;
+    }
+    output {
+        text-align: right;
+        color: var(--muted);
+        font-variant-numeric: tabular-nums;
+        white-space: nowrap;
+    }
+    button,
+    select {
+        font: inherit;
+        color: inherit;
+        background: var(--raised);
+        border: 1px solid var(--line);
+        border-radius: 6px;
+        min-height: 2rem;
+        padding: 0 0.7rem;
+    }
+    button {
+        cursor: pointer;
+    }
+    button:hover,
+    select:hover {
+        background: var(--raised-hover);
+    }
+    select {
+        width: 100%;
+        padding: 0 0.4rem;
+    }
+    input[type='range'] {
+        width: 100%;
+        min-width: 0;
+        height: 2rem;
+        margin: 0;
+        accent-color: var(--accent);
+    }
+    input[type='checkbox'] {
+        width: 1.05rem;
+        height: 1.05rem;
+        margin: 0;
+        accent-color: var(--accent);
+    }
+    :focus-visible {
+        outline: 2px solid var(--accent);
+        outline-offset: 2px;
+    }
+    .choice {
+        display: flex;
+        background: var(--raised);
+        border: 1px solid var(--line);
+        border-radius: 6px;
+        overflow: hidden;
+    }
+    .choice label {
+        flex: 1;
+        position: relative;
+    }
+    .choice input {
+        position: absolute;
+        opacity: 0;
+        inset: 0;
+        width: 100%;
+        height: 100%;
+        margin: 0;
+        cursor: pointer;
+    }
+    .choice span {
+        display: block;
+        padding: 0.3rem 0.3rem;
+        text-align: center;
+        color: var(--muted);
+    }
+    .choice label:hover span {
+        color: var(--text);
+    }
+    .choice input:checked + span {
+        background: var(--accent);
+        color: var(--accent-ink);
+        font-weight: 600;
+    }
+    .choice input:focus-visible + span {
+        outline: 2px solid var(--accent);
+        outline-offset: -4px;
+        outline-color: var(--text);
+    }
+    @media (pointer: coarse) {
+        button,
+        select,
+        .row,
+        input[type='range'] {
+            min-height: 2.6rem;
+        }
+        .choice span {
+            padding: 0.55rem 0.3rem;
+        }
+    }
+`;

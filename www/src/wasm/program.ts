@@ -1,0 +1,81 @@
+// The exports of the WebAssembly programs: client/web/viewer_exports.cpp and decoder_exports.cpp say what
+// each call does. Numbers are 32-bit addresses, sizes or ids, unless the C++ says double.
+
+export type Address = number;
+
+export interface Program {
+    /** All of the program's memory. Replaced when it grows: ask for it at each use, through Heap. */
+    readonly HEAPU8: Uint8Array;
+    _malloc(size: number): Address;
+    _free(at: Address): void;
+}
+
+export interface ProgramOptions {
+    canvas?: HTMLCanvasElement;
+    host?: unknown;
+    locateFile?: (name: string) => string;
+    instantiateWasm?: (
+        imports: WebAssembly.Imports,
+        receive: (instance: WebAssembly.Instance) => void,
+    ) => object;
+}
+
+export interface ViewerProgram extends Program {
+    _stipple_create(): Address;
+    _stipple_dispose(): void;
+    _stipple_add_url(url: Address, name: Address): number;
+    _stipple_add_file(file: number, name: Address, sizeBytes: number): number;
+    _stipple_remove_cloud(id: number): void;
+    _stipple_set_visible(id: number, visible: number): void;
+    _stipple_clouds(): Address;
+    _stipple_resize(width: number, height: number): void;
+    _stipple_set_camera(json: Address): Address;
+    _stipple_set_style(json: Address): Address;
+    _stipple_set_limits(json: Address): Address;
+    _stipple_camera(): Address;
+    _stipple_style(): Address;
+    _stipple_limits(): Address;
+    _stipple_orbit(dx: number, dy: number): void;
+    _stipple_pan(dx: number, dy: number): void;
+    _stipple_zoom(factor: number, x: number, y: number): void;
+    _stipple_show_view(name: Address): Address;
+    _stipple_set_projection(name: Address): Address;
+    _stipple_frame(): number;
+    _stipple_redraw(): void;
+    _stipple_settled(): number;
+    _stipple_counters(): Address;
+    _stipple_errors(): Address;
+    _stipple_context_lost(): void;
+    _stipple_context_restored(): Address;
+    _stipple_read_headers(
+        request: number,
+        status: number,
+        contentRange: Address,
+        etag: Address,
+        lastModified: Address,
+        contentLength: number,
+    ): number;
+    _stipple_read_buffer(request: number, size: number): Address;
+    _stipple_read_done(request: number): void;
+    _stipple_read_failed(request: number, failure: number, detail: Address): void;
+    _stipple_decode_answer(job: number, message: Address, size: number): number;
+    _stipple_decode_array(job: number, index: number, sizeBytes: number): Address;
+    _stipple_decode_done(job: number): void;
+    _stipple_decode_failed(job: number, detail: Address): void;
+}
+
+export interface DecoderProgram extends Program {
+    _stipple_describe_cloud(cloud: number, at: Address, size: number): void;
+    _stipple_forget_cloud(cloud: number): void;
+    _stipple_decode(
+        message: Address,
+        messageSize: number,
+        picture: Address,
+        pictureSize: number,
+        intensity: Address,
+        intensitySize: number,
+    ): number;
+    _stipple_answer_message(): Address;
+    _stipple_answer_array(index: number): Address;
+    _stipple_answer_array_size(index: number): number;
+}

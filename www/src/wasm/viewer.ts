@@ -1,0 +1,124 @@
+import createViewer from '@programs/stipple_viewer.mjs';
+import viewerUrl from '@programs/stipple_viewer.wasm?url';
+
+import type { Heap } from './heap.ts';
+import { Host } from './host.ts';
+import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
+import type { Camera, CloudState, Counters, Limits, NamedView, Projection, Style } from './values.ts';
+
+type Partially<T> = { [K in keyof T]?: T[K] extends object ? Partial<T[K]> : T[K] };
+export type StyleChange = Partially<Style>;
+
+/** The viewer's program (client/web/viewer.hpp) in TypeScript's types. Calls that fail throw the sentence. */
+export class Viewer {
+    private constructor(
+        private readonly program: ViewerProgram,
+        private readonly heap: Heap,
+        private readonly host: Host,
+    ) {}
+
+    /** `wake` is called when something arrived and a frame is due. */
+    static async create(canvas: HTMLCanvasElement, wake: () => void): Promise<Viewer> {
+        const host = new Host(wake);
+        const options: ProgramOptions = { canvas, host, locateFile: () => viewerUrl };
+        const program = (await createViewer(options)) as ViewerProgram;
+        const viewer = new Viewer(program, host.attach(program), host);
+        viewer.expect(program._stipple_create());
+        return viewer;
+    }
+
+    dispose(): void {
+        this.program._stipple_dispose();
+        this.host.dispose();
+    }
+
+    addUrl(url: string, name: string): number {
+        return this.heap.lendTexts([url, name], (a, b) => this.program._stipple_add_url(a!, b!));
+    }
+    addFile(file: File): number {
+        const kept = this.host.keepFile(file);
+        return this.heap.lendTexts([file.name], (at) => this.program._stipple_add_file(kept, at!, file.size));
+    }
+    removeCloud(id: number): void {
+        this.program._stipple_remove_cloud(id);
+    }
+    setVisible(id: number, visible: boolean): void {
+        this.program._stipple_set_visible(id, visible ? 1 : 0);
+    }
+    clouds(): CloudState[] {
+        return this.json<CloudState[]>(this.program._stipple_clouds());
+    }
+
+    resize(width: number, height: number): void {
+        this.program._stipple_resize(width, height);
+    }
+    setCamera(camera: Partial<Camera>): void {
+        this.change(camera, (at) => this.program._stipple_set_camera(at));
+    }
+    setStyle(style: StyleChange): void {
+        this.change(style, (at) => this.program._stipple_set_style(at));
+    }
+    setLimits(limits: Partial<Limits>): void {
+        this.change(limits, (at) => this.program._stipple_set_limits(at));
+    }
+    camera(): Camera {
+        return this.json<Camera>(this.program._stipple_camera());
+    }
+    style(): Style {
+        return this.json<Style>(this.program._stipple_style());
+    }
+    limits(): Limits {
+        return this.json<Limits>(this.program._stipple_limits());
+    }
+
+    orbit(dx: number, dy: number): void {
+        this.program._stipple_orbit(dx, dy);
+    }
+    pan(dx: number, dy: number): void {
+        this.program._stipple_pan(dx, dy);
+    }
+    zoom(factor: number, x: number, y: number): void {
+        this.program._stipple_zoom(factor, x, y);
+    }
+    showView(view: NamedView): void {
+        this.heap.lendTexts([view], (at) => this.expect(this.program._stipple_show_view(at!)));
+    }
+    setProjection(projection: Projection): void {
+        this.heap.lendTexts([projection], (at) => this.expect(this.program._stipple_set_projection(at!)));
+    }
+
+    /** True if it drew. */
+    frame(): boolean {
+        return this.program._stipple_frame() !== 0;
+    }
+    /** Has the next frame draw, also when nothing changed. */
+    redraw(): void {
+        this.program._stipple_redraw();
+    }
+    settled(): boolean {
+        return this.program._stipple_settled() !== 0;
+    }
+    counters(): Counters {
+        return this.json<Counters>(this.program._stipple_counters());
+    }
+    errors(): string[] {
+        return this.json<string[]>(this.program._stipple_errors());
+    }
+    contextLost(): void {
+        this.program._stipple_context_lost();
+    }
+    contextRestored(): void {
+        this.expect(this.program._stipple_context_restored());
+    }
+
+    private change(value: object, call: (at: Address) => Address): void {
+        this.heap.lendTexts([JSON.stringify(value)], (at) => this.expect(call(at!)));
+    }
+    private json<T>(at: Address): T {
+        return JSON.parse(this.heap.text(at)) as T;
+    }
+    private expect(at: Address): void {
+        const sentence = this.heap.text(at);
+        if (sentence !== '') throw new Error(sentence);
+    }
+}
