@@ -1,0 +1,128 @@
+#include "server/http/message.hpp"
+
+#include "server/http/http_date.hpp"
+#include "shared/base/text.hpp"
+
+#include <algorithm>
+
+namespace stipple::server {
+
+namespace {
+char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+} // namespace
+
+bool equalIgnoringCase(std::string_view a, std::string_view b) {
+    return a.size() == b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::string_view trimmed(std::string_view text) {
+    std::size_t first = text.find_first_not_of(" \t");
+    if (first == std::string_view::npos)
+        return {};
+    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+int HttpRequest::count(std::string_view name) const {
+    return static_cast<int>(std::count_if(fields.begin(), fields.end(), [&](const auto& field) {
+        return equalIgnoringCase(field.first, name);
+    }));
+}
+
+std::optional<std::string> HttpRequest::field(std::string_view name) const {
+    std::optional<std::string> value;
+    for (const auto& [fieldName, fieldValue] : fields) {
+        if (!equalIgnoringCase(fieldName, name))
+            continue;
+        if (value)
+            value->append(", ").append(fieldValue);
+        else
+            value = std::string(fieldValue);
+    }
+    return value;
+}
+
+void HttpResponse::set(std::string_view name, std::string value) {
+    for (auto& [fieldName, fieldValue] : fields)
+        if (equalIgnoringCase(fieldName, name)) {
+            fieldValue = std::move(value);
+            return;
+        }
+    fields.emplace_back(name, std::move(value));
+}
+
+std::string HttpResponse::field(std::string_view name) const {
+    for (const auto& [fieldName, fieldValue] : fields)
+        if (equalIgnoringCase(fieldName, name))
+            return fieldValue;
+    return {};
+}
+
+std::uint64_t HttpResponse::bodyBytes() const {
+    std::uint64_t sum = 0;
+    for (const BodyPart& part : body) {
+        const auto* slice = std::get_if<FileSlice>(&part);
+        sum += slice ? slice->size : std::get<std::string>(part).size();
+    }
+    return sum;
+}
+
+const char* reasonPhrase(int status) {
+    switch (status) {
+    case 200:
+        return "OK";
+    case 204:
+        return "No Content";
+    case 206:
+        return "Partial Content";
+    case 304:
+        return "Not Modified";
+    case 400:
+        return "Bad Request";
+    case 404:
+        return "Not Found";
+    case 405:
+        return "Method Not Allowed";
+    case 408:
+        return "Request Timeout";
+    case 412:
+        return "Precondition Failed";
+    case 413:
+        return "Content Too Large";
+    case 414:
+        return "URI Too Long";
+    case 416:
+        return "Range Not Satisfiable";
+    case 417:
+        return "Expectation Failed";
+    case 431:
+        return "Request Header Fields Too Large";
+    case 500:
+        return "Internal Server Error";
+    case 501:
+        return "Not Implemented";
+    case 503:
+        return "Service Unavailable";
+    case 505:
+        return "HTTP Version Not Supported";
+    default:
+        return "";
+    }
+}
+
+std::string responseHead(const HttpResponse& response, std::int64_t nowSeconds, bool keepsAlive) {
+    std::string head;
+    head.reserve(1024);
+    head += cat("HTTP/1.1 ", response.status, " ", reasonPhrase(response.status), "\r\n");
+    head += cat("Date: ", httpDate(nowSeconds), "\r\nServer: stipple\r\n");
+    for (const auto& [name, value] : response.fields)
+        head.append(name).append(": ").append(value).append("\r\n");
+    if (response.status != 204 && response.status != 304)
+        head += cat("Content-Length: ", response.bodyBytes(), "\r\n");
+    head += keepsAlive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n";
+    return head;
+}
+
+} // namespace stipple::server

@@ -1,0 +1,122 @@
+#include "server/http/representation.hpp"
+
+#include "server/http/byte_range.hpp"
+#include "server/http/entity_tag.hpp"
+#include "server/http/http_date.hpp"
+#include "server/http/problem.hpp"
+#include "shared/base/text.hpp"
+
+namespace stipple::server {
+
+namespace {
+
+BodyPart sliceOf(const Representation& representation, ByteRange range) {
+    if (const auto* file = std::get_if<std::shared_ptr<const OpenFile>>(&representation.content))
+        return FileSlice{*file, range.offset, range.size};
+    const auto& text = std::get<std::string>(representation.content);
+    return text.substr(static_cast<std::size_t>(range.offset), static_cast<std::size_t>(range.size));
+}
+
+// What 200, 206, 304, 412 and 416 all repeat.
+void setValidatorFields(HttpResponse& response, const Representation& representation) {
+    response.set("ETag", representation.validators.etag);
+    if (representation.validators.lastModifiedSeconds != 0)
+        response.set("Last-Modified", httpDate(representation.validators.lastModifiedSeconds));
+    response.set("Cache-Control", representation.cacheControl);
+    response.set("Accept-Ranges", "bytes");
+}
+
+HttpResponse problemWithValidators(int status, const std::string& detail,
+                                   const Representation& representation) {
+    HttpResponse response = problemResponse(status, detail);
+    setValidatorFields(response, representation);
+    response.set("Cache-Control", "no-store");
+    return response;
+}
+
+// RFC 9110 §14.6. Any boundary that can't occur in a part's header will do: parts are delimited by their
+// Content-Range, but a reader that searches must not find the boundary in the data by chance, so it is long
+// and depends on the version.
+void setMultipartBody(HttpResponse& response, const Representation& representation,
+                      const std::vector<ByteRange>& parts) {
+    std::uint64_t hash = 0xCBF29CE484222325ull;
+    for (char c : representation.validators.etag)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
+    std::string boundary = cat("stipple-part-", hash);
+    for (const ByteRange& part : parts) {
+        response.body.push_back(cat(response.body.empty() ? "" : "\r\n", "--", boundary,
+                                    "\r\nContent-Type: ", representation.contentType, "\r\nContent-Range: ",
+                                    contentRange(part, representation.sizeBytes()), "\r\n\r\n"));
+        response.body.push_back(sliceOf(representation, part));
+    }
+    response.body.push_back(cat("\r\n--", boundary, "--\r\n"));
+    response.set("Content-Type", cat("multipart/byteranges; boundary=", boundary));
+}
+
+} // namespace
+
+Representation Representation::ofText(std::string text, std::string contentType, std::string cacheControl) {
+    Validators validators{tagOfText(text), 0};
+    return {std::move(text), std::move(contentType), std::move(cacheControl), std::move(validators)};
+}
+
+Representation Representation::ofFile(std::shared_ptr<const OpenFile> file, std::string contentType,
+                                      std::string cacheControl) {
+    Validators validators{file->identity().entityTag(), file->identity().modifiedSeconds()};
+    return {std::move(file), std::move(contentType), std::move(cacheControl), std::move(validators)};
+}
+
+std::uint64_t Representation::sizeBytes() const {
+    const auto* file = std::get_if<std::shared_ptr<const OpenFile>>(&content);
+    return file ? (*file)->identity().sizeBytes : std::get<std::string>(content).size();
+}
+
+HttpResponse answerRepresentation(const HttpRequest& request, const Representation& representation,
+                                  std::int64_t nowSeconds) {
+    switch (evaluatePreconditions(request, representation.validators, nowSeconds)) {
+    case Precondition::failed:
+        return problemWithValidators(412, "this is not the version that the request asks for",
+                                     representation);
+    case Precondition::notModified: {
+        HttpResponse response;
+        response.status = 304;
+        setValidatorFields(response, representation);
+        return response;
+    }
+    case Precondition::passed:
+        break;
+    }
+
+    std::uint64_t sizeBytes = representation.sizeBytes();
+    ResolvedRanges ranges; // HEAD ignores Range (RFC 9110 §14.2)
+    if (request.method == "GET" && rangeApplies(request, representation.validators, nowSeconds))
+        ranges = resolveRanges(request.field("Range").value_or(""), sizeBytes);
+    if (ranges.kind == RangeAnswerKind::unsatisfiable || ranges.kind == RangeAnswerKind::refused) {
+        HttpResponse response = problemWithValidators(
+            416,
+            ranges.kind == RangeAnswerKind::refused
+                ? cat("the range is malformed, or names more than ", maxRangesInRequest, " parts")
+                : cat("no byte of the ", sizeBytes, " lies in the range"),
+            representation);
+        response.set("Content-Range", unsatisfiedRange(sizeBytes));
+        return response;
+    }
+
+    HttpResponse response;
+    setValidatorFields(response, representation);
+    response.set("Content-Type", representation.contentType);
+    if (ranges.kind == RangeAnswerKind::whole) {
+        response.body.push_back(sliceOf(representation, {0, sizeBytes}));
+        return response;
+    }
+    response.status = 206;
+    if (ranges.parts.size() == 1) {
+        response.set("Content-Range", contentRange(ranges.parts.front(), sizeBytes));
+        response.body.push_back(sliceOf(representation, ranges.parts.front()));
+    } else {
+        setMultipartBody(response, representation, ranges.parts);
+    }
+    return response;
+}
+
+} // namespace stipple::server

@@ -1,0 +1,31 @@
+// A GET or HEAD on something that has bytes and a version: preconditions, ranges, and the fields that belong
+// to each status (RFC 9110 §8, §13, §14, §15). Pure but for what FileSlice keeps open.
+#pragma once
+
+#include "server/http/message.hpp"
+#include "server/http/preconditions.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+
+namespace stipple::server {
+
+struct Representation {
+    std::variant<std::string, std::shared_ptr<const OpenFile>> content;
+    std::string contentType;
+    std::string cacheControl;
+    Validators validators;
+
+    static Representation ofText(std::string text, std::string contentType, std::string cacheControl);
+    static Representation ofFile(std::shared_ptr<const OpenFile> file, std::string contentType,
+                                 std::string cacheControl);
+    std::uint64_t sizeBytes() const;
+};
+
+// 200, 206 (one part, or multipart/byteranges for several), 304, 412 or 416.
+HttpResponse answerRepresentation(const HttpRequest& request, const Representation& representation,
+                                  std::int64_t nowSeconds);
+
+} // namespace stipple::server
