@@ -1,0 +1,87 @@
+#include "server/net/loop.hpp"
+
+#include "server/net/connection.hpp"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+
+namespace stipple::server {
+
+namespace net = boost::asio;
+
+Loop::Loop(ServerState& state) : state_(state), work_(context_.get_executor()), sweepTimer_(context_) {
+    scheduleSweep();
+    thread_ = std::thread([this] { context_.run(); });
+}
+
+Loop::~Loop() = default;
+
+void Loop::adopt(net::ip::tcp::socket socket) {
+    auto connection = std::make_unique<Connection>(*this, std::move(socket));
+    connections_.insert(connection.get());
+    net::co_spawn(context_, serve(std::move(connection)), net::detached);
+}
+
+net::awaitable<void> Loop::serve(std::unique_ptr<Connection> connection) {
+    co_await connection->run();
+    release(*connection);
+}
+
+void Loop::release(Connection& connection) {
+    connections_.erase(&connection);
+    --state_.openConnections;
+    std::lock_guard lock(state_.drainedMutex);
+    state_.drained.notify_all();
+}
+
+void Loop::stop() {
+    net::post(context_, [this] {
+        isStopping_ = true;
+        closeEach([](const Connection& connection) { return connection.isIdle(); });
+    });
+}
+
+void Loop::cut() {
+    net::post(context_, [this] { closeEach([](const Connection&) { return true; }); });
+}
+
+void Loop::join() {
+    work_.reset();
+    context_.stop();
+    if (thread_.joinable())
+        thread_.join();
+}
+
+void Loop::closeEach(const std::function<bool(const Connection&)>& which) {
+    for (Connection* connection : connections_)
+        if (which(*connection))
+            connection->close();
+}
+
+void Loop::scheduleSweep() {
+    sweepTimer_.expires_after(state_.limits.sweep);
+    sweepTimer_.async_wait([this](const boost::system::error_code& error) {
+        if (error)
+            return;
+        auto now = Connection::Clock::now();
+        closeEach([now](const Connection& connection) { return connection.isLate(now); });
+        scheduleSweep();
+    });
+}
+
+std::vector<char> Loop::takeBuffer() {
+    if (spareBuffers_.empty())
+        return std::vector<char>(bufferBytes);
+    std::vector<char> buffer = std::move(spareBuffers_.back());
+    spareBuffers_.pop_back();
+    return buffer;
+}
+
+void Loop::giveBuffer(std::vector<char> buffer) {
+    constexpr std::size_t kept = 16; // 1 MiB a loop; more are in use only while clients are slow
+    if (spareBuffers_.size() < kept)
+        spareBuffers_.push_back(std::move(buffer));
+}
+
+} // namespace stipple::server

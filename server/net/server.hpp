@@ -1,0 +1,60 @@
+// The server's sockets: accepts connections, reads requests, hands them to a Site, sends the answers.
+//
+// Threads: one event loop a thread; a connection stays on its loop, so nothing of it is locked. The calls
+// here may come from any thread.
+//
+// Memory of a connection: its request header (at most 16 KiB) and, while a part of a file is sent, 64 KiB
+// from its loop's pool; the rest of a large range goes from file to socket without being copied (sendfile).
+// Nothing grows with a file's size.
+//
+// The process ignores SIGPIPE from the first server on: a client that leaves must not end the program.
+#pragma once
+
+#include "server/net/request_log.hpp"
+#include "server/site/site.hpp"
+#include "shared/base/result.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace stipple::server {
+
+struct ServerLimits {
+    int connections = 1024; // open at once; further clients wait in the listen queue
+    std::size_t requestHeaderBytes = 16 * 1024;
+    std::chrono::milliseconds idle{60'000};       // from one answer to the next request's first byte
+    std::chrono::milliseconds header{10'000};     // from a request's first byte to the end of its header
+    std::chrono::milliseconds noProgress{30'000}; // for each 256 KiB of an answer to leave: 8.7 kB/s at least
+    std::chrono::milliseconds sweep{250};         // how often the limits are looked at
+};
+
+struct ServerOptions {
+    std::string host = "127.0.0.1"; // address or name; loopback: nobody else can connect
+    std::uint16_t port = 0;         // 0: any free one
+    int threads = 0;                // 0: one for each core, at most 8
+    ServerLimits limits;
+};
+
+class Server {
+  public:
+    // Binds, listens and runs. Errors (networkFailed): the host is none of this machine's, the port is taken.
+    static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
+                                                 std::shared_ptr<const Site> site, RequestLog log);
+    // Cuts what still runs and waits for the threads.
+    virtual ~Server() = default;
+
+    virtual std::uint16_t port() const = 0;
+    virtual std::string address() const = 0; // "http://127.0.0.1:8017/"
+    virtual int openConnections() const = 0;
+
+    // First step of ending: accepts nothing more, closes idle connections, lets answers finish.
+    virtual void stop() = 0;
+    // Second step: closes everything.
+    virtual void cut() = 0;
+    // True once stopped and no connection is left; waits up to `limit` for that.
+    virtual bool waitUntilDrained(std::chrono::milliseconds limit) = 0;
+};
+
+} // namespace stipple::server

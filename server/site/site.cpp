@@ -1,0 +1,128 @@
+#include "server/site/site.hpp"
+
+#include "server/http/problem.hpp"
+#include "server/http/representation.hpp"
+#include "server/site/cloud_json.hpp"
+#include "server/site/request_rules.hpp"
+#include "shared/base/text.hpp"
+
+namespace stipple::server {
+
+namespace {
+
+constexpr const char* allowedMethods = "GET, HEAD, OPTIONS";
+constexpr const char* revalidated = "no-cache";
+constexpr std::string_view fileSuffix = ".stipple";
+
+// On every status: a browser hides a 404 or 412 without them as it would hide a 200 (Fetch standard, CORS
+// protocol). Clouds are public to whoever reaches the server, so any origin may read them.
+void setCommonFields(HttpResponse& response) {
+    response.set("Access-Control-Allow-Origin", "*");
+    response.set("Access-Control-Expose-Headers",
+                 "Accept-Ranges, Content-Length, Content-Range, ETag, Last-Modified");
+    response.set("Cross-Origin-Resource-Policy", "cross-origin");
+    response.set("X-Content-Type-Options", "nosniff");
+}
+
+// Also the preflight: which fields a cross-origin request may carry, remembered for two hours.
+HttpResponse answerOptions() {
+    HttpResponse response;
+    response.status = 204;
+    response.set("Allow", allowedMethods);
+    response.set("Access-Control-Allow-Methods", allowedMethods);
+    response.set("Access-Control-Allow-Headers",
+                 "Range, If-Range, If-Match, If-None-Match, If-Modified-Since, If-Unmodified-Since");
+    response.set("Access-Control-Max-Age", "7200");
+    return response;
+}
+
+// A cloud whose file can't be used right now: being replaced, cut, or no cloud any more.
+HttpResponse cloudProblem(const Error& error) {
+    bool isDamaged = error.code == ErrorCode::truncated || error.code == ErrorCode::corrupt ||
+                     error.code == ErrorCode::unsupported;
+    return isDamaged ? problemResponse(503, cat("the file of this cloud can't be used: ", error.what))
+                     : problemResponse(error);
+}
+
+} // namespace
+
+HttpResponse Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
+    HttpResponse response;
+    if (auto refusal = checkRequestRules(request))
+        response = std::move(*refusal);
+    else
+        response = route(request, nowSeconds);
+    setCommonFields(response);
+    if (request.method == "HEAD")
+        response.sendsBody = false;
+    return response;
+}
+
+HttpResponse Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
+    if (request.method == "OPTIONS" && request.target == "*")
+        return answerOptions();
+    if (request.target.size() > maxTargetBytes)
+        return problemResponse(414, cat("the target is longer than ", maxTargetBytes, " bytes"));
+    auto target = parseTarget(request.target);
+    if (!target)
+        return problemResponse(400, target.error().what);
+    if (request.method == "OPTIONS")
+        return answerOptions();
+    if (request.method != "GET" && request.method != "HEAD")
+        return methodNotAllowed(request.method, allowedMethods);
+
+    const std::vector<std::string>& path = target->segments;
+    if (path.size() == 3 && path[0] == "api" && path[1] == "v1" && path[2] == "clouds")
+        return answerList(request, nowSeconds);
+    if (path.size() == 4 && path[0] == "api" && path[1] == "v1" && path[2] == "clouds")
+        return answerCloud(request, path[3], nowSeconds);
+    if (path.size() == 2 && path[0] == "clouds")
+        return answerFile(request, path[1], nowSeconds);
+    if (!path.empty() && (path[0] == "api" || path[0] == "clouds"))
+        return problemResponse(404, "there is nothing at this address");
+    return page_.answer(request, *target, nowSeconds);
+}
+
+HttpResponse Site::answerList(const HttpRequest& request, std::int64_t nowSeconds) const {
+    std::vector<NamedCloud> clouds;
+    for (const std::string& id : catalog_->ids())
+        if (auto version = catalog_->current(id))
+            clouds.emplace_back(id, *version); // one that can't be used now answers for itself when asked
+    return answerRepresentation(
+        request, Representation::ofText(cloudListJson(clouds), "application/json", revalidated), nowSeconds);
+}
+
+HttpResponse Site::answerCloud(const HttpRequest& request, const std::string& id,
+                               std::int64_t nowSeconds) const {
+    auto version = catalog_->current(id);
+    if (!version)
+        return cloudProblem(version.error());
+    return answerRepresentation(
+        request, Representation::ofText(cloudJson({id, *version}), "application/json", revalidated),
+        nowSeconds);
+}
+
+HttpResponse Site::answerFile(const HttpRequest& request, std::string_view name,
+                              std::int64_t nowSeconds) const {
+    if (!name.ends_with(fileSuffix))
+        return problemResponse(404, "there is nothing at this address");
+    auto version = catalog_->current(name.substr(0, name.size() - fileSuffix.size()));
+    if (!version)
+        return cloudProblem(version.error());
+    return answerRepresentation(
+        request, Representation::ofFile((*version)->file, "application/octet-stream", revalidated),
+        nowSeconds);
+}
+
+HttpResponse answerUnreadable(int status) {
+    const char* detail = status == 408   ? "the request did not arrive in time"
+                         : status == 431 ? "the header is too large"
+                         : status == 505 ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
+                                         : "this is not an HTTP request";
+    HttpResponse response = problemResponse(status, detail);
+    setCommonFields(response);
+    response.closes = true;
+    return response;
+}
+
+} // namespace stipple::server

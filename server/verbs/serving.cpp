@@ -1,0 +1,85 @@
+#include "server/verbs/serving.hpp"
+
+#include "server/net/server.hpp"
+#include "server/net/signals.hpp"
+#include "server/site/cloud_json.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <sys/resource.h>
+
+namespace stipple::server {
+
+namespace {
+
+// A connection is a descriptor; many systems start programs with 1024 of them but allow more.
+void raiseDescriptorLimit() {
+    struct rlimit limit {};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < limit.rlim_max) {
+        limit.rlim_cur = limit.rlim_max;
+        ::setrlimit(RLIMIT_NOFILE, &limit);
+    }
+}
+
+void printAddress(const Server& server, const Site& site, bool asJson) {
+    const auto& ids = site.catalog().ids();
+    if (asJson) {
+        nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
+        for (const std::string& id : ids)
+            clouds.push_back({{"id", id}, {"address", server.address() + cloudAddress(id).substr(1)}});
+        nlohmann::ordered_json line{
+            {"address", server.address()}, {"port", server.port()}, {"clouds", std::move(clouds)}};
+        std::printf("%s\n", line.dump().c_str());
+    } else {
+        std::printf("Serving %zu cloud%s at %s (Ctrl-C ends)\n", ids.size(), ids.size() == 1 ? "" : "s",
+                    server.address().c_str());
+    }
+    std::fflush(stdout);
+}
+
+} // namespace
+
+void addServingOptions(CLI::App& verb, ServingOptions& options) {
+    verb.add_option("--host", options.host,
+                    "Address to listen on; 0.0.0.0 lets other machines in (no password, no encryption)")
+        ->capture_default_str();
+    verb.add_option("--port", options.port, "Port to listen on; 0: any free one")->capture_default_str();
+    verb.add_option("--page", options.pageFolder, "Folder of the built page");
+    verb.add_flag("--json", options.asJson, "Print the address and the clouds as one line of JSON");
+    verb.add_flag("--log", options.logsRequests, "Print a line for each request to standard error");
+    verb.add_option("--grace", options.graceSeconds, "Seconds that downloads may go on after Ctrl-C")
+        ->check(CLI::Range(0, 86400))
+        ->capture_default_str();
+}
+
+int serveUntilSignalled(const char* verb, const ServingOptions& options,
+                        const std::vector<std::string>& paths,
+                        const std::function<void(const std::string&)>& onReady) {
+    raiseDescriptorLimit();
+    auto opened = CloudCatalog::open(paths);
+    if (!opened)
+        return cli::fail(verb, opened.error());
+    for (const Error& warning : opened->warnings)
+        std::fprintf(stderr, "stipple %s: left out: %s\n", verb, warning.sentence().c_str());
+    auto page = openPageFolder(options.pageFolder);
+    if (!page)
+        return cli::fail(verb, page.error());
+    auto site = std::make_shared<const Site>(std::move(opened->catalog), Page(std::move(*page)));
+
+    RequestLog log;
+    if (options.logsRequests)
+        log = [](const RequestRecord& record) { std::fprintf(stderr, "%s\n", formatRecord(record).c_str()); };
+    ServerOptions serverOptions;
+    serverOptions.host = options.host;
+    serverOptions.port = options.port;
+    auto server = Server::start(serverOptions, site, log);
+    if (!server)
+        return cli::fail(verb, server.error());
+    printAddress(**server, *site, options.asJson);
+    onReady((*server)->address());
+    runUntilSignalled(**server, std::chrono::seconds(options.graceSeconds));
+    return cli::success;
+}
+
+} // namespace stipple::server

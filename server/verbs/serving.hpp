@@ -1,0 +1,31 @@
+// What `serve` and `view` share: options, start, the line that says where, and the end.
+#pragma once
+
+#include "shared/base/result.hpp"
+#include "shared/cli/verb.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace stipple::server {
+
+struct ServingOptions {
+    std::string host = "127.0.0.1";
+    std::uint16_t port = 8017;
+    std::string pageFolder; // empty: the built page beside the program or in the source tree
+    bool asJson = false;
+    bool logsRequests = false;
+    int graceSeconds = 10;
+};
+
+void addServingOptions(CLI::App& verb, ServingOptions& options);
+
+// Serves the clouds of `paths` until a signal ends it; `verb` is for messages. Prints one line to standard
+// output once it listens, then calls `onReady` with the address. Returns the exit code.
+int serveUntilSignalled(const char* verb, const ServingOptions& options,
+                        const std::vector<std::string>& paths,
+                        const std::function<void(const std::string& address)>& onReady);
+
+} // namespace stipple::server

@@ -1,0 +1,130 @@
+#include "tests/http/support/raw_client.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cctype>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sstream>
+#include <sys/socket.h>
+#include <unistd.h>
+
+namespace stipple::test {
+
+RawClient::RawClient(std::uint16_t port) {
+    socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (socket_ >= 0 && ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+        ::close(socket_);
+        socket_ = -1;
+    }
+}
+
+RawClient::~RawClient() {
+    if (socket_ >= 0)
+        ::close(socket_);
+}
+
+bool RawClient::send(std::string_view bytes) {
+    while (!bytes.empty()) {
+        ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        if (sent <= 0)
+            return false;
+        bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+}
+
+bool RawClient::fill(int milliseconds) {
+    pollfd waiting{socket_, POLLIN, 0};
+    if (::poll(&waiting, 1, milliseconds) <= 0)
+        return false;
+    char bytes[65536];
+    ssize_t got = ::recv(socket_, bytes, sizeof bytes, 0);
+    if (got <= 0)
+        return false;
+    buffer_.append(bytes, static_cast<std::size_t>(got));
+    return true;
+}
+
+RawResponse RawClient::receive(bool hasBody) {
+    RawResponse response;
+    std::size_t end;
+    while ((end = buffer_.find("\r\n\r\n")) == std::string::npos)
+        if (!fill())
+            return response;
+    response.head = buffer_.substr(0, end);
+    buffer_.erase(0, end + 4);
+
+    std::istringstream lines(response.head);
+    std::string line;
+    std::getline(lines, line);
+    response.status = line.size() > 12 ? std::atoi(line.c_str() + 9) : 0;
+    while (std::getline(lines, line)) {
+        if (!line.empty() && line.back() == '\r')
+            line.pop_back();
+        std::size_t colon = line.find(": ");
+        std::string name = line.substr(0, colon);
+        std::transform(name.begin(), name.end(), name.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        response.fields[name] = colon == std::string::npos ? "" : line.substr(colon + 2);
+    }
+    std::size_t length = hasBody ? std::strtoull(response.field("content-length").c_str(), nullptr, 10) : 0;
+    while (buffer_.size() < length)
+        if (!fill())
+            break;
+    response.isComplete = buffer_.size() >= length;
+    response.body = buffer_.substr(0, length);
+    buffer_.erase(0, response.body.size());
+    return response;
+}
+
+RawResponse RawClient::ask(std::string_view request) {
+    std::string bytes;
+    for (char c : request)
+        bytes += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    send(bytes + "\r\n\r\n");
+    return receive(!request.starts_with("HEAD "));
+}
+
+bool RawClient::isClosedWithin(int milliseconds) {
+    pollfd waiting{socket_, POLLIN, 0};
+    char byte;
+    return buffer_.empty() && ::poll(&waiting, 1, milliseconds) == 1 && ::recv(socket_, &byte, 1, 0) <= 0;
+}
+
+void RawClient::setReceiveBuffer(int bytes) {
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
+}
+
+void RawClient::finishSending() {
+    ::shutdown(socket_, SHUT_WR);
+}
+
+RawResponse askOnce(std::uint16_t port, std::string_view request) {
+    RawClient client(port);
+    return client.ask(request);
+}
+
+std::string golden(const RawResponse& response) {
+    std::istringstream lines(response.head);
+    std::string line, text;
+    while (std::getline(lines, line)) {
+        if (!line.empty() && line.back() == '\r')
+            line.pop_back();
+        if (line.starts_with("Date: "))
+            continue;
+        for (const char* name : {"ETag", "Last-Modified", "Content-Security-Policy"})
+            if (line.starts_with(std::string(name) + ": "))
+                line = std::string(name) + ": <...>";
+        if (std::size_t at = line.find("boundary="); at != std::string::npos)
+            line = line.substr(0, at) + "boundary=<boundary>";
+        text += line + "\n";
+    }
+    return text;
+}
+
+} // namespace stipple::test
