@@ -11,7 +11,7 @@
 
 namespace stipple {
 
-// Enough that two neighbouring entries differ by at most three levels of 255 in any gradient.
+// Enough that two neighbouring entries differ by at most four levels of 255 in any gradient.
 inline constexpr int gradientEntries = 1024;
 
 // R | G << 8 | B << 16 | 255 << 24, from low values to high.
