@@ -33,7 +33,7 @@ struct PngImage {
 
 } // namespace
 
-Status writePng(const std::string& path, const Image& image) {
+Result<Bytes> encodePng(const Image& image) {
     std::size_t pixels = image.rgba.size() / 4;
     std::vector<std::uint8_t> rgb(pixels * 3);
     for (std::size_t i = 0; i < pixels; ++i)
@@ -46,9 +46,14 @@ Status writePng(const std::string& path, const Image& image) {
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
     Bytes encoded(size);
     if (!png_image_write_to_memory(&png.image, encoded.data(), &size, 0, rgb.data(), 0, nullptr))
-        return Error{ErrorCode::invalidArgument, cat("the picture can't be coded: ", png.image.message), path,
-                     ""};
+        return Error{ErrorCode::invalidArgument,
+                     cat("the picture can't be coded as PNG: ", png.image.message), "", ""};
     encoded.resize(size);
+    return encoded;
+}
+
+Status writePng(const std::string& path, const Image& image) {
+    STIPPLE_TRY(encoded, encodePng(image));
     STIPPLE_TRY(file, OutputFile::create(path));
     STIPPLE_CHECK(file->append(encoded));
     return file->commit();

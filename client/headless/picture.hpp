@@ -1,0 +1,51 @@
+// A cloud to a picture, start to end: opens it, chooses the camera, loads until everything the view wants
+// has arrived, draws once.
+#pragma once
+
+#include "client/core/camera.hpp"
+#include "client/core/counters.hpp"
+#include "client/core/style.hpp"
+#include "client/core/view_session.hpp"
+#include "client/render/image.hpp"
+#include "shared/base/result.hpp"
+#include "shared/io/byte_source.hpp"
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace stipple::headless {
+
+enum class Backend { software, gles };
+
+struct PictureRequest {
+    int width = 1280, height = 720; // pixels, 1..16384 each
+    // "top", "front" or "iso"; or a camera as JSON (client/core/json.hpp), whose absent fields are those of
+    // "iso".
+    std::string view = "iso";
+    std::optional<Projection> projection; // goes before the view's own
+    Style style;
+    SessionLimits limits;
+    Backend backend = Backend::software;
+    int threads = 0;                           // of the software backend; 0: one per core
+    std::chrono::milliseconds timeout{60'000}; // for opening and loading together
+};
+
+struct Picture {
+    Image image;
+    Camera camera;
+    FrameCounters frame;
+    SessionCounters session;
+    std::string renderer;                                     // "software, 2 threads", or the GL driver
+    double openSeconds = 0, loadSeconds = 0, drawSeconds = 0; // until ready; until settled; drawing
+};
+
+// What can be said against a request before anything is opened: size, view. invalidArgument.
+Status checkRequest(const PictureRequest& request);
+
+// Errors: those of the request, of the source, of the file's bytes (also of single nodes: a picture with
+// holes is no answer), of the GL driver; networkFailed or limitExceeded when time runs out.
+Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request);
+
+} // namespace stipple::headless

@@ -1,0 +1,130 @@
+// stipple render FILE|URL -o OUT.png: one picture of one cloud, without a window.
+#include "client/core/json.hpp"
+#include "client/headless/http_source.hpp"
+#include "client/headless/picture.hpp"
+#include "client/headless/png.hpp"
+#include "shared/base/text.hpp"
+#include "shared/cli/verb.hpp"
+#include "shared/io/output_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdio>
+#include <memory>
+
+namespace stipple {
+
+void addRenderVerb(CLI::App& program, cli::Action& action);
+
+namespace {
+
+using namespace headless;
+
+struct Options {
+    std::string input, output;
+    std::string size = "1280x720";
+    std::string style = "{}";
+    std::string projection;
+    std::string backend = "software";
+    double timeoutSeconds = 60;
+    bool json = false;
+    PictureRequest request;
+};
+
+// "1280x720".
+bool parseSize(const std::string& text, int& width, int& height) {
+    int read = 0;
+    return std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &read) == 2 &&
+           static_cast<std::size_t>(read) == text.size();
+}
+
+Result<PictureRequest> requestOf(const Options& options) {
+    PictureRequest request = options.request;
+    if (!parseSize(options.size, request.width, request.height))
+        return Error{ErrorCode::invalidArgument, cat("'", options.size, "' is no picture size"), "--size",
+                     "write WIDTHxHEIGHT, for example 1280x720"};
+    STIPPLE_TRY(json, parseJson(options.style, "--style"));
+    STIPPLE_TRY(style, styleFromJson(json));
+    request.style = style;
+    if (!options.projection.empty())
+        request.projection =
+            options.projection == "orthographic" ? Projection::orthographic : Projection::perspective;
+    request.backend = options.backend == "gles" ? Backend::gles : Backend::software;
+    request.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(options.timeoutSeconds * 1000));
+    STIPPLE_CHECK(checkRequest(request));
+    return request;
+}
+
+Status render(const Options& options) {
+    STIPPLE_TRY(request, requestOf(options));
+    STIPPLE_TRY(source, openSource(options.input));
+    // An output that can't be written is known before anything is loaded.
+    STIPPLE_TRY(file, OutputFile::create(options.output));
+    STIPPLE_TRY(picture, drawPicture(std::move(source), request));
+    STIPPLE_TRY(png, encodePng(picture.image));
+    STIPPLE_CHECK(file->append(png));
+    STIPPLE_CHECK(file->commit());
+
+    if (options.json) {
+        nlohmann::json answer{
+            {"output", options.output},
+            {"width", picture.image.width},
+            {"height", picture.image.height},
+            {"backend", options.backend},
+            {"renderer", picture.renderer},
+            {"camera", toJson(picture.camera)},
+            {"frame", toJson(picture.frame)},
+            {"session", toJson(picture.session)},
+            {"seconds",
+             {{"open", picture.openSeconds}, {"load", picture.loadSeconds}, {"draw", picture.drawSeconds}}}};
+        std::printf("%s\n", jsonText(answer).c_str());
+    } else {
+        std::printf(
+            "%s: %d x %d pixels, %llu points of %llu nodes; opened in %.3f s, loaded in %.3f s, drawn in "
+            "%.3f s\n",
+            options.output.c_str(), picture.image.width, picture.image.height,
+            static_cast<unsigned long long>(picture.frame.pointsDrawn),
+            static_cast<unsigned long long>(picture.frame.nodesDrawn), picture.openSeconds,
+            picture.loadSeconds, picture.drawSeconds);
+    }
+    return {};
+}
+
+} // namespace
+
+void addRenderVerb(CLI::App& program, cli::Action& action) {
+    auto options = std::make_shared<Options>();
+    CLI::App* verb = program.add_subcommand("render", "Draw a picture of a .stipple file, local or served");
+    verb->add_option("input", options->input, "File, or address (http://…)")->required();
+    verb->add_option("-o,--output", options->output, "Picture to write (PNG)")->required();
+    verb->add_option(
+            "--view", options->request.view,
+            "top, front, iso, or a camera as JSON: {\"position\": [x, y, z], \"target\": [x, y, z], …}")
+        ->capture_default_str();
+    verb->add_option("--size", options->size, "Width and height in pixels")->capture_default_str();
+    verb->add_option("--budget", options->request.limits.pointBudget, "Points drawn at most")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+        ->capture_default_str();
+    verb->add_option("--backend", options->backend, "software or gles")
+        ->check(CLI::IsMember({"software", "gles"}))
+        ->capture_default_str();
+    verb->add_option("--style", options->style,
+                     "How points look, as JSON: {\"colourMode\": \"elevation\", \"sizePixels\": 3, …}");
+    verb->add_option("--projection", options->projection, "perspective or orthographic")
+        ->check(CLI::IsMember({"perspective", "orthographic"}));
+    verb->add_option("--threads", options->request.threads, "Of the software backend; 0: one per core")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    verb->add_option("--timeout", options->timeoutSeconds, "Seconds for opening and loading")
+        ->check(CLI::Range(0.001, 86400.0))
+        ->capture_default_str();
+    verb->add_flag("--json", options->json, "Print camera and counters as JSON");
+    verb->callback([options, &action] {
+        action = [options] {
+            Status status = render(*options);
+            return status.ok() ? static_cast<int>(cli::success) : cli::fail("render", status.error());
+        };
+    });
+}
+
+} // namespace stipple
