@@ -131,6 +131,26 @@ ProjObject geocentricOf(ProjObject crs, ProjContext& proj) {
               : nullptr};
 }
 
+// A CRS whose parameters the keys spell out, or null.
+ProjObject spelledOut(const GeoKeys& keys, ProjContext& proj) {
+    GeotiffReader reader(keys, proj);
+    std::string definition = reader.projString();
+    if (definition.empty())
+        return nullptr;
+    ProjObject crs = proj.fromText(definition);
+    // The PROJ string knows the ellipsoid only; the code of the geodetic system has the datum too.
+    int geodetic = keys.number(geodeticCrs);
+    if (crs && geodetic > 0 && geodetic != userDefined && keys.number(projectedCrs) > 0)
+        if (ProjObject base = proj.fromEpsg(geodetic))
+            if (ProjObject based{proj_crs_alter_geodetic_crs(proj.get(), crs.get(), base.get())})
+                crs = std::move(based);
+    std::string name = las::readableText(reader.text(citation));
+    if (!crs || name.empty())
+        return crs;
+    ProjObject named{proj_alter_name(proj.get(), crs.get(), name.c_str())};
+    return named ? std::move(named) : std::move(crs);
+}
+
 // The horizontal CRS of the keys, or null with a warning.
 ProjObject horizontalOf(const GeoKeys& keys, ProjContext& proj, std::vector<std::string>& warnings) {
     int projected = keys.number(projectedCrs), geodetic = keys.number(geodeticCrs);
@@ -148,16 +168,7 @@ ProjObject horizontalOf(const GeoKeys& keys, ProjContext& proj, std::vector<std:
         return keys.number(modelType) == geocentricModel ? geocentricOf(std::move(crs), proj)
                                                          : std::move(crs);
     }
-    GeotiffReader reader(keys, proj);
-    std::string definition = reader.projString();
-    if (definition.empty())
-        return nullptr;
-    ProjObject crs = proj.fromText(definition);
-    std::string name = las::readableText(reader.text(citation));
-    if (!crs || name.empty())
-        return crs;
-    ProjObject named{proj_alter_name(proj.get(), crs.get(), name.c_str())};
-    return named ? std::move(named) : std::move(crs);
+    return spelledOut(keys, proj);
 }
 
 // With the vertical system of the keys, where they name one.

@@ -64,9 +64,13 @@ std::string wktOf(PJ_CONTEXT* context, const PJ* crs) {
 } // namespace
 
 Result<std::unique_ptr<ProjContext>> ProjContext::open() {
+    // libgeotiff makes contexts of its own after PROJ's default one, which would print.
+    static const PJ_LOG_LEVEL quiet = proj_log_level(nullptr, PJ_LOG_NONE);
+    (void)quiet;
     std::unique_ptr<ProjContext> context(new ProjContext);
     if (!context->context_)
         return Error{ErrorCode::ioFailed, "PROJ could not be started", "", ""};
+    proj_log_level(context->get(), PJ_LOG_ERROR);
     proj_log_func(context->get(), &context->messages_, keepMessage);
     proj_context_set_enable_network(context->get(), 0);
     if (!proj_context_get_database_path(context->get()))
