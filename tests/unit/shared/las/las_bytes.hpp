@@ -182,6 +182,28 @@ inline Bytes recordBytes(const Bytes& file, const las::Header& header, std::size
     return Bytes(first, first + static_cast<std::ptrdiff_t>(points * header.recordLength));
 }
 
+// Reads, writes with the options of the file, reads again.
+inline void requireRoundTrip(const Bytes& original) {
+    MemorySource source(original);
+    auto reader = las::Reader::open(source);
+    REQUIRE(reader.ok());
+    PointBatch points;
+    REQUIRE((*reader)->read(0, (*reader)->pointCount(), points).ok());
+    auto written = writeLas(las::optionsLike(**reader), points);
+    if (!written.ok())
+        FAIL(written.error().sentence());
+    LasContents again = requireLas(*written);
+
+    CHECK(again.warnings.empty());
+    CHECK(again.schema == (*reader)->schema());
+    CHECK(again.points.positions == points.positions);
+    CHECK(again.points.columns == points.columns);
+    CHECK(again.header.versionMinor == (*reader)->header().versionMinor);
+    CHECK(again.header.grid == (*reader)->header().grid);
+    CHECK(recordBytes(*written, again.header, points.size()) ==
+          recordBytes(original, (*reader)->header(), points.size()));
+}
+
 inline bool anyContains(const std::vector<std::string>& sentences, const std::string& part) {
     for (const std::string& sentence : sentences)
         if (sentence.find(part) != std::string::npos)

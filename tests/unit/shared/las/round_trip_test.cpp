@@ -19,28 +19,6 @@ std::vector<Case> allCases() {
     return cases;
 }
 
-// Reads, writes with the options of the file, reads again.
-void requireRoundTrip(const Bytes& original) {
-    MemorySource source(original);
-    auto reader = las::Reader::open(source);
-    REQUIRE(reader.ok());
-    PointBatch points;
-    REQUIRE((*reader)->read(0, (*reader)->pointCount(), points).ok());
-    auto written = writeLas(las::optionsLike(**reader), points);
-    if (!written.ok())
-        FAIL(written.error().sentence());
-    LasContents again = requireLas(*written);
-
-    CHECK(again.warnings.empty());
-    CHECK(again.schema == (*reader)->schema());
-    CHECK(again.points.positions == points.positions);
-    CHECK(again.points.columns == points.columns);
-    CHECK(again.header.versionMinor == (*reader)->header().versionMinor);
-    CHECK(again.header.grid == (*reader)->header().grid);
-    CHECK(recordBytes(*written, again.header, points.size()) ==
-          recordBytes(original, (*reader)->header(), points.size()));
-}
-
 } // namespace
 
 TEST_CASE("random records of every format and version survive a round trip bit for bit") {
