@@ -129,7 +129,7 @@ void unpackRecords(const RecordLayout& layout, ByteSpan records, PointBatch& bat
 Status packRecords(const RecordLayout& layout, const std::vector<ColumnField>& columns, const Schema& schema,
                    const PointBatch& batch, std::size_t first, std::size_t count, std::uint8_t* records) {
     std::size_t stride = layout.recordLength;
-    std::memset(records, 0, count * stride);
+    std::fill_n(records, count * stride, std::uint8_t{0});
     for (std::size_t done = 0; done < count; done += blockRecords) {
         std::size_t part = std::min(blockRecords, count - done);
         std::size_t from = first + done;
