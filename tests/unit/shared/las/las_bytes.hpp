@@ -4,15 +4,13 @@
 #include "shared/io/memory_source.hpp"
 #include "shared/las/las_reader.hpp"
 #include "shared/las/las_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <string>
-#include <unistd.h>
 
 namespace stipple::test {
 
@@ -139,32 +137,9 @@ inline LasContents requireLas(Bytes bytes) {
     return std::move(*contents);
 }
 
-// A folder that goes with the test.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() /
-                ("stipple-las-" + std::to_string(::getpid()) + "-" + std::to_string(++count));
-        std::filesystem::create_directories(path_);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::string file(const std::string& name) const { return (path_ / name).string(); }
-    std::size_t fileCount() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), {}));
-    }
-
-  private:
-    std::filesystem::path path_;
-};
-
 inline Bytes fileBytes(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    REQUIRE(file.good());
-    return Bytes(std::istreambuf_iterator<char>(file), {});
+    std::string text = fileText(path);
+    return Bytes(text.begin(), text.end());
 }
 
 // Writes `points` and returns the file's bytes.
