@@ -7,7 +7,6 @@ namespace stipple::synth {
 
 namespace {
 
-constexpr std::size_t maxLeafItems = 4;
 constexpr int binCount = 16;
 // Below this level ranges are halved whatever the cost, so that the depth stays under what a traversal's
 // stack holds: 20 + log4(2^32) levels with 3 waiting children each.
@@ -32,6 +31,7 @@ struct Bvh::Build {
     std::span<const Box<float>> boxes;
     std::vector<std::uint32_t>& order;
     std::vector<Node>& nodes;
+    std::size_t maxLeafItems;
 
     struct Range {
         std::size_t first, count;
@@ -142,12 +142,12 @@ struct Bvh::Build {
     }
 };
 
-Bvh::Bvh(std::span<const Box<float>> boxes, std::vector<std::uint32_t>& order) {
+Bvh::Bvh(std::span<const Box<float>> boxes, std::vector<std::uint32_t>& order, std::size_t leafItems) {
     order.resize(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
     if (boxes.empty())
         return;
-    Build build{boxes, order, nodes_};
+    Build build{boxes, order, nodes_, leafItems};
     auto range = build.rangeOf(0, boxes.size());
     bounds_ = range.box;
     nodes_.emplace_back();

@@ -8,8 +8,12 @@
 #include "converter/synth/primitive.hpp"
 
 #include <array>
+#include <bit>
 #include <span>
 #include <vector>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
 
 namespace stipple::synth {
 
@@ -19,8 +23,8 @@ class Bvh {
     static constexpr float padding = 1e-3f;
 
     Bvh() = default;
-    // `order` receives the items' order: leaves refer to ranges of it.
-    Bvh(std::span<const Box<float>> boxes, std::vector<std::uint32_t>& order);
+    // `order` receives the items' order: leaves refer to ranges of it, of at most `leafItems`.
+    Bvh(std::span<const Box<float>> boxes, std::vector<std::uint32_t>& order, std::size_t leafItems = 4);
 
     const Box<float>& bounds() const { return bounds_; }
 
@@ -48,7 +52,20 @@ class Bvh {
 
     static Float4 larger(Float4 a, Float4 b) { return a > b ? a : b; }
     static Float4 smaller(Float4 a, Float4 b) { return a < b ? a : b; }
-    static Float4 all(float v) { return Float4{v, v, v, v}; }
+    // Bit i: a[i] <= b[i].
+    static unsigned lanes(Float4 a, Float4 b) {
+#ifdef __SSE__
+        return static_cast<unsigned>(_mm_movemask_ps(_mm_cmple_ps(a, b)));
+#else
+        unsigned bits = 0;
+        for (unsigned i = 0; i < 4; ++i)
+            bits |= a[i] <= b[i] ? 1u << i : 0u;
+        return bits;
+#endif
+    }
+    static Float4 all(float v) {
+        return Float4{v, v, v, v};
+    }
 
     std::vector<Node> nodes_;
     Box<float> bounds_;
@@ -92,9 +109,8 @@ void Bvh::traverse(const Ray& ray, double& limit, Leaf&& leaf) const {
             leave = smaller(leave, f);
         }
         std::size_t base = size;
-        for (std::size_t i = 0; i < 4; ++i) {
-            if (!(enter[i] <= leave[i]))
-                continue;
+        for (unsigned entered = lanes(enter, leave); entered != 0; entered &= entered - 1) {
+            auto i = static_cast<std::size_t>(std::countr_zero(entered));
             Entry next{node.child[i], node.count[i], enter[i]};
             std::size_t at = size++;
             for (; at > base && stack[at - 1].distance < next.distance; --at)

@@ -222,6 +222,8 @@ void IndoorBuilder::furnish(int storey, int index, bool north) {
             put(shelves_[2], 2.3, y + 0.32, pi);
         }
         put(table_, 3.0, 5.6, 0);
+        // The shelves hide one half of the room from the other.
+        scene_.station({Vec3d{roomX_ + 3.0, north ? corridorTo + 0.9 : corridorFrom - 0.9, floor_ + 1.62}});
         break;
     default: // lounge with a kitchen
         put(kitchen_, 3.6, 0.36, pi);

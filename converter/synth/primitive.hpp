@@ -32,9 +32,6 @@ struct Primitive {
     float radius = 0, radiusEnd = 0;
 };
 
-// Distance to the first crossing beyond `from`, or noHit. Surfaces have two sides.
-double intersect(const Primitive& primitive, const Ray& ray, double from);
-
 // Unit normal at a point of the surface, on no particular side.
 Vec3d normalAt(const Primitive& primitive, Vec3d point);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace stipple::synth {
 
@@ -35,9 +36,11 @@ class Random {
     }
     bool chance(double probability) { return uniform() < probability; }
     // Mean 0, deviation 1 (Box and Muller 1958).
-    double normal() {
-        double radius = std::sqrt(-2 * std::log(1 - uniform()));
-        return radius * std::cos(2 * std::numbers::pi * uniform());
+    double normal() { return normalPair().first; }
+    // Two independent ones at little more than the price of one.
+    std::pair<double, double> normalPair() {
+        double radius = std::sqrt(-2 * std::log(1 - uniform())), turn = 2 * std::numbers::pi * uniform();
+        return {radius * std::cos(turn), radius * std::sin(turn)};
     }
 
   private:

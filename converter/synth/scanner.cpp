@@ -66,14 +66,14 @@ Rgb Scanner::photograph(const Hit& hit, const Look& look, Random& random) const 
         // Lamps on every ceiling: soft light from above, a little less in corners that face down.
         light = 0.62 + 0.28 * std::abs(hit.normal.z) + 0.06 * hit.normal.x + 0.04 * hit.normal.y;
     } else {
-        double facing = dot(hit.normal, sun);
-        bool leaf = materialInfo(hit.material).interception == Interception::partial;
-        if (leaf)
-            facing = 0.35 + 0.65 * std::abs(facing); // leaves glow through
-        double direct = facing > 0 ? facing * scene_.lightAlong({hit.position + hit.normal * 2e-3, sun}) : 0;
+        double facing = dot(hit.normal, sun), direct = 0;
+        if (look.sunlit >= 0) // leaves glow through
+            direct = (0.35 + 0.65 * std::abs(facing)) * static_cast<double>(look.sunlit);
+        else if (facing > 0)
+            direct = facing * scene_.lightAlong({hit.position + hit.normal * 2e-3, sun});
         light = 0.42 + 0.12 * hit.normal.z + 0.68 * direct;
     }
-    auto grain = static_cast<float>(light * (1 + 0.025 * random.normal()));
+    auto grain = static_cast<float>(light * random.uniform(0.95, 1.05));
     return look.colour * grain;
 }
 
@@ -91,13 +91,14 @@ void Scanner::measure(const Source& source, std::uint64_t index, const Pulse& pu
         Look look = scene_.lookAt(hit);
         Return r;
         r.range = hit.distance;
-        r.position = hit.position + pulse.ray.direction * (noise_ * random.normal());
+        auto [rangeError, powerError] = random.normalPair();
+        r.position = hit.position + pulse.ray.direction * (noise_ * rangeError);
         double cosine = std::abs(dot(hit.normal, pulse.ray.direction));
         // Falls with the range's square, levelled near by as receivers do.
         double spread = std::min(1.3, (nominal * nominal) /
                                           std::max(hit.distance * hit.distance, 0.5 * nominal * nominal));
         r.intensity = found[i].energy * static_cast<double>(look.reflectance) * (0.15 + 0.85 * cosine) *
-                      spread * (1 + 0.04 * random.normal());
+                      spread * (1 + 0.04 * powerError);
         r.colour = photograph(hit, look, random);
         r.classification = look.classification;
         r.number = static_cast<std::uint8_t>(i + 1);

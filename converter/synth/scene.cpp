@@ -1,5 +1,6 @@
 #include "converter/synth/scene.hpp"
 
+#include "converter/synth/intersect.hpp"
 #include "converter/synth/noise.hpp"
 #include "converter/synth/random.hpp"
 #include "converter/synth/scenes.hpp"
@@ -118,6 +119,7 @@ void Scene::castRay(const Ray& ray, double maxDistance, HitList& hits) const {
 }
 
 double Scene::lightAlong(const Ray& ray) const {
+    constexpr double leafShade = 0.4; // what one leaf or pane lets through: three make darkness
     double light = 1;
     double limit = 1e9;
     bvh_.traverse(ray, limit, [&](std::uint32_t first, std::uint32_t count) {
@@ -130,7 +132,7 @@ double Scene::lightAlong(const Ray& ray) const {
                     const Primitive& primitive = mesh.primitives[i];
                     if (intersect(primitive, local, 1e-3) == noHit)
                         continue;
-                    light *= isOpaque(primitive.material) ? 0.0 : 0.6;
+                    light *= isOpaque(primitive.material) ? 0.0 : leafShade;
                     if (light < 0.1) {
                         light = 0;
                         limit = -1;
@@ -191,9 +193,8 @@ std::uint8_t vegetationClass(double heightMeters) {
                               : classes::highVegetation;
 }
 
-bool isVegetation(Material m) {
-    return m == Material::leafBroad || m == Material::leafNeedle || m == Material::leafHedge ||
-           m == Material::bark;
+bool isLeaf(Material m) {
+    return m == Material::leafBroad || m == Material::leafNeedle || m == Material::leafHedge;
 }
 
 } // namespace
@@ -210,8 +211,14 @@ Look Scene::lookAt(const Hit& hit) const {
     }
     if (info.tint >= 0)
         look.colour = placed.instance.tints[static_cast<std::size_t>(info.tint)];
-    if (isVegetation(hit.material))
-        look.classification = vegetationClass(hit.position.z - placed.instance.position.z);
+    if (isLeaf(hit.material) || hit.material == Material::bark) {
+        double height = hit.position.z - placed.instance.position.z;
+        look.classification = vegetationClass(height);
+        if (isLeaf(hit.material)) {
+            double top = static_cast<double>(meshOf(placed).bvh.bounds().max.z) * placed.instance.scale;
+            look.sunlit = static_cast<float>(std::clamp(height / top, 0.0, 1.0));
+        }
+    }
     if (info.textureDepth > 0) {
         // One noise for floors and walls alike: the plane that the surface spreads over most.
         Vec3d q = placed.toLocal(hit.position) * (1 / static_cast<double>(info.textureScale));
@@ -265,7 +272,7 @@ std::unique_ptr<const Scene> SceneBuilder::finish() {
         }
         boxes.push_back(box);
     }
-    scene_->bvh_ = Bvh(boxes, scene_->byPlace_);
+    scene_->bvh_ = Bvh(boxes, scene_->byPlace_, 1); // entering an instance costs more than a node
     for (const auto& wish : wishes_) {
         auto clear = std::find_if(wish.begin(), wish.end(),
                                   [&](Vec3d p) { return scene_->distanceToSurface(p) > 0.45; });

@@ -43,6 +43,8 @@ struct Look {
     Rgb colour;               // of the material, not lit
     float reflectance = 0.5f; // near infrared, 0..1
     std::uint8_t classification = 0;
+    // Leaves: how much sun gets there, by the height in the crown; others: negative, ask lightAlong().
+    float sunlit = -1;
 };
 
 // A model that has been given its search structure. Shared by all its instances.

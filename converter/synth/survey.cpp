@@ -63,11 +63,10 @@ std::vector<Source> stationsOf(const Scene& scene) {
     return stations;
 }
 
-// Smooth wobble of the aircraft, radians or metres, `amplitude` large.
+// Smooth wobble of the aircraft, radians or metres, `amplitude` large. Its four uses have periods of no
+// common multiple.
 double sway(double seconds, double periodSeconds, double phase, double amplitude) {
-    double w = 2 * pi / periodSeconds;
-    return amplitude *
-           (0.7 * std::sin(w * seconds + phase) + 0.3 * std::sin(2.7 * w * seconds + 1.7 * phase));
+    return amplitude * std::sin(2 * pi / periodSeconds * seconds + phase);
 }
 
 } // namespace

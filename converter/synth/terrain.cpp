@@ -120,8 +120,8 @@ class TerrainBuilder {
         }
         addWater();
         planPowerLine();
-        addWoods();
         addFarms();
+        addWoods();
         return scene_.finish();
     }
 
@@ -184,6 +184,8 @@ class TerrainBuilder {
                 double trees = plan_->wood(tu, tv), river = plan_->fromRiver(tu, tv);
                 bool clear =
                     std::abs(tv - plan_->roadV(tu)) > 9 && river > waterHalf + 5 && fromLine(tu, tv) > 16;
+                for (Vec2d farm : farms_)
+                    clear = clear && std::hypot(tu - farm.x, tv - farm.y) > 38;
                 if (!clear)
                     continue;
                 bool conifer = fractalNoise(7, tu / 160, tv / 160, 2) + 0.25 * (size - 0.5) > 0;
@@ -231,6 +233,7 @@ class TerrainBuilder {
                               1,
                               {Rgb{0.88f, 0.84f, 0.76f}, Rgb{0.55f, 0.25f, 0.17f}}});
             }
+            farms_.push_back({u + 15, v});
             double roadV = plan_->roadV(u + 12);
             Vec3d at = ground_->at(u + 12, roadV - 1.6);
             double yaw = std::atan2(plan_->roadV(u + 13) - plan_->roadV(u + 11), 2);
@@ -244,6 +247,7 @@ class TerrainBuilder {
     const Ground* ground_;
     double inner_ = 0; // side of the ground, a whole number of cells
     Vec2d lineFrom_, lineAlong_;
+    std::vector<Vec2d> farms_; // woods keep clear of them
     std::vector<std::uint32_t> broadleaves_, conifers_, bushes_;
 };
 

@@ -75,8 +75,8 @@ TownPlan::TownPlan(std::uint64_t seed, double side) : seed_(seed), side_(side) {
 }
 
 Vec2d TownPlan::place(double u, double v) const {
-    return {u - side_ / 2 + 16 * fractalNoise(seed_ + 11, u / 190, v / 190, 1),
-            v - side_ / 2 + 16 * fractalNoise(seed_ + 12, u / 190, v / 190, 1)};
+    return {u - side_ / 2 + 24 * fractalNoise(seed_ + 11, u / 190, v / 190, 1),
+            v - side_ / 2 + 24 * fractalNoise(seed_ + 12, u / 190, v / 190, 1)};
 }
 
 double TownPlan::height(double u, double v) const {

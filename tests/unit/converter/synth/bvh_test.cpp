@@ -1,4 +1,5 @@
 #include "converter/synth/bvh.hpp"
+#include "converter/synth/intersect.hpp"
 #include "converter/synth/model.hpp"
 #include "converter/synth/random.hpp"
 

@@ -1,3 +1,4 @@
+#include "converter/synth/intersect.hpp"
 #include "converter/synth/model.hpp"
 #include "converter/synth/random.hpp"
 
