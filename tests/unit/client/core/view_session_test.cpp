@@ -442,7 +442,7 @@ TEST_CASE("a node that does not decode is asked for once more, then recorded; th
     SmallCloud damaged = bigCloud();
     ByteRange picture = nodeOf(damaged, "2-3-3-0").strataRange(4);
     for (std::uint64_t i = picture.offset; i < picture.end(); i += 7)
-        damaged.file[i] ^= 0x55;
+        damaged.file[static_cast<std::size_t>(i)] ^= 0x55;
     auto script = fixture.openAndFit(damaged);
     REQUIRE(fixture.settle());
     REQUIRE(fixture.session->recentErrors().size() == 1);
