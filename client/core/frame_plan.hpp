@@ -12,7 +12,9 @@
 //   relative = (float(p - cell) - fraction) * scale        world units, seen from the camera
 //
 // p - cell is exact in 32-bit integers. p - cell and -fraction never differ in sign outside the node, so
-// nothing cancels: the error is relative to the distance from the camera. coarseShift is 0.
+// nothing cancels: the error is relative to the distance from the camera, under 0.001 pixel in perspective
+// for any grid and zoom. In orthographic views that distance is the depth of the content: at most 2^-23
+// of it, which is 0.01 pixel where the content is 80,000 pixels deep. coarseShift is 0.
 //
 // Depth: a point at view distance d (along `forward`) in [near, far] has depth log2(d / near) /
 // log2(far / near) in [0, 1]. Points nearer than near or beyond far are not drawn.
