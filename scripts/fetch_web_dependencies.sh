@@ -14,7 +14,7 @@ cp -r /usr/include/catch2 /usr/include/nlohmann "$deps/include/"
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-(cd "$work" && npm pack --silent "zstd-napi@$zstd_napi_version" >/dev/null && tar xzf zstd-napi-*.tgz)
+(cd "$work" && npm pack --loglevel=error "zstd-napi@$zstd_napi_version" >/dev/null && tar xzf zstd-napi-*.tgz)
 lib=$(find "$work" -type d -path '*zstd/lib' | head -n 1)
 [ -n "$lib" ] || { echo "zstd's sources are not in zstd-napi $zstd_napi_version" >&2; exit 1; }
 mkdir -p "$deps/zstd" && cp -r "$lib" "$deps/zstd/lib"

@@ -51,6 +51,6 @@ if ! node_is_new_enough node && ! node_is_new_enough build/tools/node/bin/node; 
   esac
   echo "installing Node.js $version under build/tools"
   mkdir -p build/tools && rm -rf build/tools/node build/tools/package
-  (cd build/tools && npm pack --silent "node-linux-$architecture@$version" >/dev/null &&
+  (cd build/tools && npm pack --loglevel=error "node-linux-$architecture@$version" >/dev/null &&
     tar xzf "node-linux-$architecture-$version.tgz" && mv package node && rm -f ./*.tgz && chmod +x node/bin/node)
 fi
