@@ -1,59 +1,187 @@
 #include "shared/codec/column_codec.hpp"
 
 #include "shared/base/text.hpp"
-#include "shared/codec/section.hpp"
+#include "shared/codec/bit_stream.hpp"
+#include "shared/codec/integer_planes.hpp"
+#include "shared/codec/radix_sort.hpp"
+#include "shared/codec/varint.hpp"
 
 #include <algorithm>
+#include <vector>
 
 namespace stipple {
 
 namespace {
 
-enum class Method : std::uint8_t { constant = 0, plain = 1 };
+enum class Method : std::uint8_t {
+    constant = 0, // one value
+    plain = 1,    // the bytes as they are, one section
+    planes = 2,
+    ranked = 3, // the distinct values in ascending order, and each point's place among them
+};
+
+template <class T>
+std::vector<T> component(ByteSpan values, std::size_t components, std::size_t c) {
+    std::vector<T> own(values.size() / (sizeof(T) * components));
+    for (std::size_t i = 0; i < own.size(); ++i)
+        own[i] = loadLe<T>(values.data() + (i * components + c) * sizeof(T));
+    return own;
+}
+
+// Each value's place among the distinct values in ascending order.
+template <class T>
+std::vector<std::uint32_t> rankValues(const std::vector<T>& values, std::vector<T>& distinct) {
+    auto [low, high] = std::minmax_element(values.begin(), values.end());
+    T least = *low;
+    std::vector<KeyedIndex> keyed(values.size());
+    for (std::uint32_t i = 0; i < keyed.size(); ++i)
+        keyed[i] = {static_cast<T>(values[i] - least), i};
+    radixSort(keyed, bitLength(static_cast<T>(*high - least)));
+    std::vector<std::uint32_t> ranks(values.size());
+    for (std::size_t i = 0; i < keyed.size(); ++i) {
+        if (i == 0 || keyed[i].key != keyed[i - 1].key)
+            distinct.push_back(static_cast<T>(keyed[i].key + least));
+        ranks[keyed[i].index] = static_cast<std::uint32_t>(distinct.size() - 1);
+    }
+    return ranks;
+}
+
+// [varint distinct values] [planes of them] [planes of ranks: u8, u16 or u32, the narrowest that holds them]
+template <class T>
+void writeRanked(ByteWriter& to, const std::vector<T>& values) {
+    std::vector<T> distinct;
+    std::vector<std::uint32_t> ranks = rankValues(values, distinct);
+    writeVarint(to, distinct.size());
+    writePlanes<T>(to, distinct);
+    if (distinct.size() <= 1u << 8)
+        writePlanes<std::uint8_t>(to, std::vector<std::uint8_t>(ranks.begin(), ranks.end()));
+    else if (distinct.size() <= 1u << 16)
+        writePlanes<std::uint16_t>(to, std::vector<std::uint16_t>(ranks.begin(), ranks.end()));
+    else
+        writePlanes<std::uint32_t>(to, ranks);
+}
+
+template <class T>
+Status readRanked(ByteReader& from, std::span<T> values) {
+    std::uint64_t count = readVarint(from);
+    if (!from.ok() || count > values.size())
+        return Error{
+            ErrorCode::corrupt, cat(count, " distinct values of ", values.size(), " points"), {}, {}};
+    std::vector<T> distinct(static_cast<std::size_t>(count));
+    STIPPLE_CHECK(readPlanes<T>(from, distinct));
+    auto readRanks = [&]<class R>(R) -> Status {
+        std::vector<R> ranks(values.size());
+        STIPPLE_CHECK(readPlanes<R>(from, ranks));
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (ranks[i] >= distinct.size())
+                return Error{ErrorCode::corrupt, "a value's rank is past the last distinct value", {}, {}};
+            values[i] = distinct[ranks[i]];
+        }
+        return {};
+    };
+    return count <= 1u << 8    ? readRanks(std::uint8_t{})
+           : count <= 1u << 16 ? readRanks(std::uint16_t{})
+                               : readRanks(std::uint32_t{});
+}
+
+template <class T>
+void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
+    if (std::all_of(values.begin(), values.end(), [&](T value) { return value == values[0]; })) {
+        to.write(Method::constant);
+        to.write(values.empty() ? T{} : values[0]);
+        return;
+    }
+    ByteWriter best;
+    best.write(Method::plain);
+    writeSection(best,
+                 ByteSpan(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)),
+                 Effort::thorough);
+    auto offer = [&](ByteWriter& other) {
+        if (other.size() < best.size())
+            best = std::move(other);
+    };
+    if (8 * best.size() > values.size()) { // under a bit a value nothing else comes near
+        ByteWriter planes;
+        planes.write(Method::planes);
+        writePlanes<T>(planes, values);
+        offer(planes);
+    }
+    if (sizeof(T) == 8) { // times: several returns share one, and all come from a few short spans
+        ByteWriter ranked;
+        ranked.write(Method::ranked);
+        writeRanked(ranked, values);
+        offer(ranked);
+    }
+    to.writeBytes(best.bytes());
+}
+
+template <class T>
+Status decodeComponent(ByteReader& from, std::span<T> values) {
+    auto method = from.read<Method>();
+    if (!from.ok())
+        return Error{ErrorCode::truncated, "an attribute ends early", {}, {}};
+    switch (method) {
+    case Method::constant:
+        std::fill(values.begin(), values.end(), from.read<T>());
+        if (!from.ok())
+            return Error{ErrorCode::truncated, "a constant ends early", {}, {}};
+        return {};
+    case Method::plain:
+        return readFullSection(from, {reinterpret_cast<std::uint8_t*>(values.data()), values.size_bytes()});
+    case Method::planes:
+        return readPlanes<T>(from, values);
+    case Method::ranked:
+        return readRanked<T>(from, values);
+    }
+    return Error{ErrorCode::corrupt, "unknown way to store an attribute", {}, {}};
+}
+
+template <class T>
+Result<Bytes> decodeAs(ByteReader& from, std::size_t pointCount, std::size_t components) {
+    Bytes values(pointCount * components * sizeof(T));
+    std::vector<T> own(pointCount);
+    for (std::size_t c = 0; c < components; ++c) {
+        STIPPLE_CHECK(decodeComponent<T>(from, own));
+        for (std::size_t i = 0; i < pointCount; ++i)
+            storeLe(values.data() + (i * components + c) * sizeof(T), own[i]);
+    }
+    return values;
+}
+
+template <class T>
+void encodeAs(ByteWriter& to, ByteSpan values, std::size_t components) {
+    for (std::size_t c = 0; c < components; ++c)
+        encodeComponent(to, component<T>(values, components, c));
+}
 
 } // namespace
 
-// per component: [u8 method] [constant: the value] [plain: section]
+// per component: [u8 method] [what the method says]
 void encodeColumn(ByteWriter& to, ByteSpan values, std::size_t width, std::size_t components) {
-    std::size_t stride = width * components, count = values.size() / stride;
-    for (std::size_t c = 0; c < components; ++c) {
-        Bytes own(count * width);
-        for (std::size_t i = 0; i < count; ++i)
-            std::memcpy(own.data() + i * width, values.data() + i * stride + c * width, width);
-        bool constant = std::equal(own.begin() + static_cast<std::ptrdiff_t>(std::min(width, own.size())),
-                                   own.end(), own.begin());
-        if (constant && count > 0) {
-            to.write(Method::constant);
-            to.writeBytes(ByteSpan(own).first(width));
-            continue;
-        }
-        to.write(Method::plain);
-        writeSection(to, own, Effort::thorough);
+    switch (width) {
+    case 1:
+        return encodeAs<std::uint8_t>(to, values, components);
+    case 2:
+        return encodeAs<std::uint16_t>(to, values, components);
+    case 4:
+        return encodeAs<std::uint32_t>(to, values, components);
+    default:
+        return encodeAs<std::uint64_t>(to, values, components);
     }
 }
 
 Result<Bytes> decodeColumn(ByteReader& from, std::size_t pointCount, std::size_t width,
                            std::size_t components) {
-    std::size_t stride = width * components;
-    Bytes values(pointCount * stride);
-    Bytes own(pointCount * width);
-    for (std::size_t c = 0; c < components; ++c) {
-        auto method = from.read<Method>();
-        if (method == Method::constant) {
-            ByteSpan value = from.readBytes(width);
-            if (!from.ok())
-                return Error{ErrorCode::truncated, "a constant ends early", {}, {}};
-            for (std::size_t i = 0; i < pointCount; ++i)
-                std::memcpy(values.data() + i * stride + c * width, value.data(), width);
-        } else if (method == Method::plain && from.ok()) {
-            STIPPLE_CHECK(readFullSection(from, own));
-            for (std::size_t i = 0; i < pointCount; ++i)
-                std::memcpy(values.data() + i * stride + c * width, own.data() + i * width, width);
-        } else {
-            return Error{ErrorCode::corrupt, "unknown way to store an attribute", {}, {}};
-        }
+    switch (width) {
+    case 1:
+        return decodeAs<std::uint8_t>(from, pointCount, components);
+    case 2:
+        return decodeAs<std::uint16_t>(from, pointCount, components);
+    case 4:
+        return decodeAs<std::uint32_t>(from, pointCount, components);
+    default:
+        return decodeAs<std::uint64_t>(from, pointCount, components);
     }
-    return values;
 }
 
 } // namespace stipple

@@ -20,7 +20,7 @@
 namespace stipple {
 
 inline constexpr int maxKeyBits = 63;
-inline constexpr int maxLift = 7;
+inline constexpr int maxLift = 3;
 
 struct KeyLayout {
     std::array<std::uint32_t, 3> origin{}, step{1, 1, 1}, extent{};

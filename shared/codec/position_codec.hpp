@@ -9,6 +9,7 @@
 #include "shared/base/result.hpp"
 #include "shared/codec/bit_stream.hpp"
 #include "shared/codec/key_layout.hpp"
+#include "shared/codec/neighbour_choice.hpp"
 #include "shared/format/node_entry.hpp"
 
 #include <vector>
@@ -29,31 +30,40 @@ SortedPoints sortPoints(std::span<const Vec3<std::uint32_t>> points);
 // The positions of one stratum of `points`; that of stratum 0 begins with the layout.
 void encodePositions(ByteWriter& to, const SortedPoints& points, int stratum);
 
+// How the points of stratum `stratum` > 0 relate to their neighbours; none for stratum 0.
+std::vector<NeighbourChoice> neighbourChoices(std::span<const std::uint64_t> keys, int stratum);
+
 // Decodes strata one after the other.
 class PositionDecoder {
   public:
     // For the first `strata` strata of a node of `pointCount` points, at most 2^nodeBits steps wide.
-    // Takes 16 bytes of memory a point; the caller has bounded the count.
+    // Takes 32 bytes of memory a point; the caller has bounded their number.
     PositionDecoder(std::uint32_t pointCount, int nodeBits, int strata);
 
     // Stratum `stratum`, from where encodePositions began to write; in ascending order, and only those that
     // have points. Errors: truncated, corrupt.
     Status decode(int stratum, ByteReader& from);
+    // Of the stratum decoded last; as neighbourChoices() tells them.
+    NeighbourChoices choices() const { return choices_; }
     // The coordinates of every decoded point, in progressive order. Errors: corrupt, if one lies outside
     // the extent that the layout states.
-    Status positions(std::vector<Vec3<std::uint32_t>>& to) const;
+    Result<std::vector<Vec3<std::uint32_t>>> takePositions();
 
   private:
-    Status decodeFirst(BitReader& bits, std::span<const std::uint8_t> tokens, std::size_t& used);
+    Status decodeFirst(BitReader& bits, std::span<const std::uint8_t> tokens);
     Status decodeBetween(int stratum, BitReader& bits, std::span<const std::uint8_t> tokens,
-                         std::size_t& used);
+                         std::size_t tokenCount);
+    void decodeLows(int stratum, BitReader& bits);
+    void place(int stratum, const BitPermutation& toPacked, std::array<std::uint32_t, 3>& largest,
+               std::span<Vec3<std::uint32_t>> to) const;
 
     std::uint32_t pointCount_;
     int nodeBits_, strata_;
     int decoded_ = 0;
-    KeyLayout layout_;
     std::uint32_t spacing_; // Morton indices between neighbours in keys_
-    std::vector<std::uint64_t> keys_, lows_;
+    KeyLayout layout_;
+    std::vector<std::uint64_t> keys_, lows_; // in Morton order
+    std::vector<NeighbourChoice> choices_;
 };
 
 } // namespace stipple

@@ -18,7 +18,7 @@ struct FreeContext {
 
 void setUp(ZSTD_CCtx* context, Effort effort) {
     constexpr int literalsLevel = -100; // the faster the level, the fewer string matches are found: none
-    int level = effort == Effort::literals ? literalsLevel : effort == Effort::fast ? 1 : 9;
+    int level = effort == Effort::literals ? literalsLevel : effort == Effort::fast ? 1 : 6;
     ZSTD_CCtx_reset(context, ZSTD_reset_session_and_parameters);
     ZSTD_CCtx_setParameter(context, ZSTD_c_format, ZSTD_f_zstd1_magicless);
     ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, level);

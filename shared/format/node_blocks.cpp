@@ -79,15 +79,16 @@ Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry&
         if (Status status = positions.decode(s, reader); !status)
             return placed(status.error());
         if (channels > 0)
-            if (Status status = colour.decode(s, reader); !status)
+            if (Status status = colour.decode(s, reader, positions.choices()); !status)
                 return placed(status.error());
         ByteSpan padding = reader.readBytes(reader.remaining());
         if (std::any_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte != 0; }))
             return placed(corrupt("bytes are left over"));
         at += size;
     }
-    STIPPLE_CHECK(positions.positions(picture.positions));
-    colour.values(picture.colour);
+    STIPPLE_TRY(coordinates, positions.takePositions());
+    picture.positions = std::move(coordinates);
+    picture.colour = colour.takeValues();
     return picture;
 }
 

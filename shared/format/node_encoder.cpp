@@ -148,8 +148,8 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
         ByteWriter payload;
         encodePositions(payload, sorted, stratum);
         if (!colourAttributes.empty())
-            encodeColour(payload, colour, node.pointCount, static_cast<int>(colourAttributes.size()), width,
-                         stratum);
+            encodeColour(payload, colour, static_cast<int>(colourAttributes.size()), width, stratum,
+                         neighbourChoices(sorted.keys, stratum));
         std::size_t least = (count + maxPointsPerByte - 1) / maxPointsPerByte;
         if (payload.size() + blockFrameBytes < least)
             payload.bytes().resize(least - blockFrameBytes);
