@@ -95,7 +95,7 @@ void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
     best.write(Method::plain);
     writeSection(best,
                  ByteSpan(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)),
-                 Effort::thorough);
+                 sizeof(T) == 8 ? Effort::fast : Effort::thorough); // wide ones seldom repeat as strings
     auto offer = [&](ByteWriter& other) {
         if (other.size() < best.size())
             best = std::move(other);

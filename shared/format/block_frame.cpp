@@ -3,6 +3,8 @@
 #include "shared/base/text.hpp"
 #include "shared/codec/checksum.hpp"
 
+#include <algorithm>
+
 namespace stipple {
 
 Bytes frameBlock(ByteSpan payload) {
@@ -13,6 +15,13 @@ Bytes frameBlock(ByteSpan payload) {
     return block.take();
 }
 
+Bytes framePaddedBlock(ByteSpan payload) {
+    Bytes block = frameBlock(payload);
+    if (block.size() >= paddedFrom)
+        block.resize((block.size() + paddedTo - 1) / paddedTo * paddedTo);
+    return block;
+}
+
 Result<ByteSpan> unframeBlock(ByteSpan block, const std::string& name, std::uint64_t offsetBytes) {
     std::string where = cat(name, ", byte ", offsetBytes);
     ByteReader reader(block);
@@ -21,8 +30,8 @@ Result<ByteSpan> unframeBlock(ByteSpan block, const std::string& name, std::uint
     if (!reader.ok())
         return Error{
             ErrorCode::truncated, cat("the block's frame ends after ", block.size(), " bytes"), where, {}};
-    if (size != reader.remaining())
-        return Error{size > reader.remaining() ? ErrorCode::truncated : ErrorCode::corrupt,
+    if (size > reader.remaining())
+        return Error{ErrorCode::truncated,
                      cat("the block says that it holds ", size, " bytes, but there are ", reader.remaining()),
                      where,
                      {}};
@@ -30,6 +39,10 @@ Result<ByteSpan> unframeBlock(ByteSpan block, const std::string& name, std::uint
     if (blockChecksum(payload) != checksum)
         return Error{ErrorCode::corrupt, "the block's checksum does not match its bytes", where,
                      "the file was altered or damaged; copy or convert it again"};
+    ByteSpan padding = reader.readBytes(reader.remaining());
+    if (padding.size() >= paddedTo ||
+        std::any_of(padding.begin(), padding.end(), [](auto byte) { return byte != 0; }))
+        return Error{ErrorCode::corrupt, "there are bytes behind the block's payload", where, {}};
     return payload;
 }
 

@@ -1,6 +1,7 @@
 #include "shared/format/cloud_writer.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/format/block_frame.hpp"
 #include "shared/format/file_parts.hpp"
 #include "shared/format/hierarchy_layout.hpp"
 
@@ -94,6 +95,15 @@ class Writer final : public CloudWriter {
         if (!added_.insert(node.key).second)
             return Error{
                 ErrorCode::invalidArgument, "the node was added before", "node " + node.key.text(), {}};
+        auto unpadded = [](const Bytes& block) {
+            return block.size() >= paddedFrom && block.size() % paddedTo != 0;
+        };
+        if (std::any_of(node.strata.begin(), node.strata.end(), unpadded) ||
+            std::any_of(node.attributes.begin(), node.attributes.end(), unpadded))
+            return Error{ErrorCode::invalidArgument,
+                         "a block of the node is not padded",
+                         "node " + node.key.text(),
+                         {}};
         StoredNode stored;
         stored.pointCount = node.pointCount;
         stored.offset = blocks_->size();
@@ -124,7 +134,7 @@ class Writer final : public CloudWriter {
         FileHeader header;
         header.metadata = {fileHeaderBytes, metadataBlock.size()};
         header.rootChunk = {header.metadata.end(), 0};
-        std::vector<Bytes> chunkBlocks = placeChunks(header, plans, chunks, attributeBlockCount);
+        std::vector<Bytes> chunkBlocks = placeChunks(header, plans, chunks);
 
         TemporaryFile file(path_ + ".part");
         STIPPLE_CHECK(file.opened());
@@ -197,8 +207,7 @@ class Writer final : public CloudWriter {
     // Sizes from the last chunk to the first (a chunk states those of its children), then offsets from the
     // first to the last: header, metadata, root chunk, all nodes chunk by chunk, all other chunks.
     static std::vector<Bytes> placeChunks(FileHeader& header, const std::vector<ChunkPlan>& plans,
-                                          std::vector<HierarchyChunk>& chunks,
-                                          std::size_t attributeBlockCount) {
+                                          std::vector<HierarchyChunk>& chunks) {
         std::vector<Bytes> blocks(chunks.size());
         std::uint64_t otherChunksBytes = 0;
         for (std::size_t c = chunks.size(); c-- > 0;) {
@@ -206,7 +215,7 @@ class Writer final : public CloudWriter {
             for (NodeEntry& entry : chunks[c].nodes)
                 if (child < chunks.size() && chunks[child].parent == entry.key)
                     entry.childChunk.size = blocks[child++].size();
-            blocks[c] = writeHierarchyChunk(chunks[c], attributeBlockCount);
+            blocks[c] = writeHierarchyChunk(chunks[c]);
             otherChunksBytes += c > 0 ? blocks[c].size() : 0;
         }
         header.rootChunk.size = blocks[0].size();
@@ -222,7 +231,7 @@ class Writer final : public CloudWriter {
             chunkOffsets[c + 1] = chunkOffsets[c] + blocks[c].size();
         for (std::size_t c = 0; c < chunks.size(); ++c) {
             chunks[c].childChunksOffset = chunkOffsets[plans[c].firstChildChunk];
-            blocks[c] = writeHierarchyChunk(chunks[c], attributeBlockCount);
+            blocks[c] = writeHierarchyChunk(chunks[c]);
         }
         return blocks;
     }

@@ -9,7 +9,8 @@ inline constexpr std::uint32_t formatVersion = 1;
 // Limits a reader checks before it asks for a block or makes room for what it says.
 inline constexpr std::uint64_t maxMetadataBytes = 64 * 1024 * 1024;
 inline constexpr std::uint64_t maxChunkBytes = 16 * 1024 * 1024;
-inline constexpr std::uint32_t maxChunkNodes = 65536;
+inline constexpr std::uint64_t maxChunkNumbers = 1 << 22; // counts and sizes of all nodes of a chunk
+inline constexpr std::size_t maxAttributes = 1024;
 
 Bytes writeFileHeader(const FileHeader& header);    // fileHeaderBytes
 Bytes writeMetadata(const CloudMetadata& metadata); // framed
@@ -28,6 +29,6 @@ struct HierarchyChunk {
 };
 
 // The size does not depend on the two offsets, so a file is laid out from the leaves up.
-Bytes writeHierarchyChunk(const HierarchyChunk& chunk, std::size_t attributeBlockCount); // framed
+Bytes writeHierarchyChunk(const HierarchyChunk& chunk); // framed
 
 } // namespace stipple

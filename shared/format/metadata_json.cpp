@@ -311,6 +311,8 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
         metadata.pictureColour = static_cast<PictureColour>(colourIndex);
     metadata.colourIs8Bit = fields.flag("colourIs8Bit");
     const Json& attributes = fields.list("attributes");
+    if (attributes.size() > maxAttributes)
+        fields.refuse("attributes", cat("a list of at most ", maxAttributes));
     for (std::size_t a = 0; a < attributes.size() && !error; ++a) {
         Fields attribute(attributes[a], cat("attributes[", a, "]"), error);
         metadata.schema.attributes.push_back(readAttribute(attribute));

@@ -118,7 +118,7 @@ Bytes attributeBlock(const CloudMetadata& metadata, const AttributeBlock& block,
         encodeColumn(payload, sortedColumn(sorted, column, attribute.size()),
                      attributeTypeSize(attribute.type), static_cast<std::size_t>(attribute.components));
     }
-    return allZero ? Bytes{} : frameBlock(payload.bytes());
+    return allZero ? Bytes{} : framePaddedBlock(payload.bytes());
 }
 
 } // namespace
@@ -153,14 +153,14 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
         std::size_t least = (count + maxPointsPerByte - 1) / maxPointsPerByte;
         if (payload.size() + blockFrameBytes < least)
             payload.bytes().resize(least - blockFrameBytes);
-        node.strata[static_cast<std::size_t>(stratum)] = frameBlock(payload.bytes());
+        node.strata[static_cast<std::size_t>(stratum)] = framePaddedBlock(payload.bytes());
         sizeBytes = std::max(sizeBytes, payload.size());
     }
     for (const AttributeBlock& block : attributeBlocks(metadata)) {
         node.attributes.push_back(attributeBlock(metadata, block, points, sorted));
         sizeBytes = std::max(sizeBytes, node.attributes.back().size());
     }
-    if (sizeBytes > UINT32_MAX - blockFrameBytes)
+    if (sizeBytes > UINT32_MAX - blockFrameBytes - paddedTo)
         return placed(
             Error{ErrorCode::limitExceeded, "a block of the node is over 4 GB", {}, "split the node"});
     return node;
