@@ -168,9 +168,8 @@ Bytes encodeHeaderBlock(const HeaderBlock& block) {
     writer.write(block.pointCount);
     for (std::uint64_t count : block.pointsByReturn)
         writer.write(count);
-    Bytes bytes = writer.take();
-    bytes.resize(headerBlockSize(block.versionMinor));
-    return bytes;
+    const Bytes& all = writer.bytes(); // as LAS 1.4 has it; earlier versions end before
+    return Bytes(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(headerBlockSize(block.versionMinor)));
 }
 
 } // namespace stipple::las

@@ -48,12 +48,13 @@ class FileReader final : public Reader {
     Result<bool> signatureAt(WindowReader& file, std::uint64_t offset) const;
     Status readExtendedRecords(const HeaderBlock& block, WindowReader& file, RecordWalk& walk);
     void buildLayout();
-    Status countPoints(std::uint64_t fileBytes);
+    void countPoints();
 
     ByteSource& source_;
     Header header_;
     RecordLayout layout_;
     std::uint64_t pointCount_ = 0;
+    std::uint64_t pointsEnd_ = 0; // end of the file, or where the extended records begin
     std::vector<std::string> warnings_;
 };
 
@@ -68,9 +69,11 @@ Status FileReader::parse() {
     STIPPLE_CHECK(takeFormat(block));
     takeCounts(block);
     WindowReader file(source_, source_.sizeBytes());
+    pointsEnd_ = file.fileBytes();
     STIPPLE_CHECK(readRecords(block, file));
     buildLayout();
-    return countPoints(file.fileBytes());
+    countPoints();
+    return {};
 }
 
 void FileReader::takeFields(const HeaderBlock& block) {
@@ -201,8 +204,10 @@ Status FileReader::placePoints(const HeaderBlock& block, WindowReader& file, std
 Status FileReader::readExtendedRecords(const HeaderBlock& block, WindowReader& file, RecordWalk& walk) {
     constexpr std::uint64_t noEnd = std::numeric_limits<std::uint64_t>::max();
     if (block.evlrCount > 0) {
-        auto counted = readVlrs(file, block.evlrOffset, block.evlrCount, noEnd, true, walk);
-        STIPPLE_CHECK(counted);
+        STIPPLE_TRY(end, readVlrs(file, block.evlrOffset, block.evlrCount, noEnd, true, walk));
+        // Records that fill the rest of the file to the byte are where they should be.
+        if (end == file.fileBytes() && block.evlrOffset >= header_.pointDataOffset)
+            pointsEnd_ = block.evlrOffset;
     }
     // LAS 1.3 has one extended record, the waveform packets, and no count of them. Where the packets are
     // in a file of their own, the offset means nothing here.
@@ -226,16 +231,17 @@ void FileReader::buildLayout() {
     addExtraBytes(layout_, header_.recordLength, descriptors, warnings_);
 }
 
-Status FileReader::countPoints(std::uint64_t fileBytes) {
+void FileReader::countPoints() {
     pointCount_ = header_.pointCount;
     if (header_.compressed)
-        return {};
-    std::uint64_t room = fileBytes - std::min<std::uint64_t>(fileBytes, header_.pointDataOffset);
+        return;
+    std::uint64_t room = pointsEnd_ - std::min<std::uint64_t>(pointsEnd_, header_.pointDataOffset);
     if (pointCount_ > room / header_.recordLength) {
         pointCount_ = room / header_.recordLength;
-        warn("the header counts ", header_.pointCount, " points, but the file ends after ", pointCount_);
+        warn("the header counts ", header_.pointCount, " points, but ",
+             pointsEnd_ == source_.sizeBytes() ? "the file ends" : "the extended records begin", " after ",
+             pointCount_);
     }
-    return {};
 }
 
 Status FileReader::read(std::uint64_t first, std::uint64_t count, PointBatch& batch) {

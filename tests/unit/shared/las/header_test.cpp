@@ -133,6 +133,20 @@ TEST_CASE("a count beyond the end of the file gives the points that are there") 
     CHECK(requireLas(bytes).points.size() == 4);
 }
 
+TEST_CASE("a count that runs into the extended records gives the points before them") {
+    LasRecipe recipe{4, 6, 5};
+    recipe.vlrs = {record("one", 1, 500, true)};
+    Bytes bytes = lasBytes(recipe);
+    put(bytes, atCount, std::uint64_t{7});
+    LasContents las = requireLas(bytes);
+    CHECK(las.points.size() == 5);
+    CHECK(las.header.vlrs.size() == 1);
+    CHECK(anyContains(las.warnings, "the extended records begin after 5"));
+    // Records that do not end with the file are not believed so far.
+    bytes.push_back(0);
+    CHECK(requireLas(bytes).points.size() == 7);
+}
+
 TEST_CASE("a point format from a later version is read, with a warning") {
     LasContents las = requireLas(lasBytes({2, 7, 5}));
     CHECK(anyContains(las.warnings, "point format 7 is not part of LAS 1.2"));
