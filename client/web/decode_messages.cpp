@@ -1,5 +1,8 @@
 #include "client/web/decode_messages.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace stipple::web {
 namespace {
 
@@ -84,7 +87,7 @@ Result<DecodeJob> decodeJob(ByteSpan message) {
         size = in.read<std::uint32_t>();
     job.strata = in.read<std::int32_t>();
     job.wantsIntensity = in.read<std::uint8_t>() != 0;
-    if (!in.ok() || in.remaining() != 0 || job.strata < 1 || job.strata > strataCount)
+    if (!in.ok() || in.remaining() != 0 || job.strata < 0 || job.strata > strataCount)
         return damaged("a decoding job has the wrong length");
     return job;
 }
@@ -125,8 +128,8 @@ Bytes encodeAnswer(const Result<ResidentNode>& answer) {
     out.write(static_cast<std::int32_t>(node.positionShift));
     out.write(node.pointCount);
     out.write(node.totalPoints);
-    out.write(static_cast<std::uint8_t>(!node.colourWords.empty()));
-    out.write(static_cast<std::uint8_t>(!node.intensity.empty()));
+    for (int i = 0; i < nodeArrayCount; ++i)
+        out.write(static_cast<std::uint32_t>(nodeArray(node, i).size() / 4));
     return out.take();
 }
 
@@ -148,14 +151,21 @@ Result<ResidentNode> decodeAnswer(ByteSpan message) {
     node.positionShift = in.read<std::int32_t>();
     node.pointCount = in.read<std::uint32_t>();
     node.totalPoints = in.read<std::uint32_t>();
-    bool hasColour = in.read<std::uint8_t>() != 0;
-    bool hasIntensity = in.read<std::uint8_t>() != 0;
+    std::array<std::uint32_t, nodeArrayCount> counts{};
+    for (std::uint32_t& count : counts)
+        count = in.read<std::uint32_t>();
     if (!in.ok() || in.remaining() != 0 || node.pointCount > maxPoints)
         return damaged("an answer to a decoding job has the wrong length");
-    node.positionWords.resize(std::size_t{node.pointCount} * 2);
-    node.positionLowWords.resize(node.positionShift > 0 ? node.pointCount : 0);
-    node.colourWords.resize(hasColour ? node.pointCount : 0);
-    node.intensity.resize(hasIntensity ? node.pointCount : 0);
+    // An array is whole or absent: a job for intensities alone has no positions.
+    const std::array<std::uint32_t, nodeArrayCount> whole{2 * node.pointCount, node.pointCount,
+                                                          node.pointCount, node.pointCount};
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        if (counts[i] != 0 && counts[i] != whole[i])
+            return damaged("an array of a decoded node has the wrong length");
+    node.positionWords.resize(counts[0]);
+    node.positionLowWords.resize(counts[1]);
+    node.colourWords.resize(counts[2]);
+    node.intensity.resize(counts[3]);
     return node;
 }
 

@@ -2,6 +2,9 @@ import { listClouds, type ListedCloud } from './server_clouds.ts';
 import type { CloudState, Counters, Limits, NamedView, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
+/** What failed is tried again after a pause, and no arrival tells when that is over: so look now and then. */
+const retryPauseMs = 200;
+
 /**
  * What the page shows and the elements change: the viewer's state as last read, and the frame loop. The loop
  * runs only after something was changed or arrived; a still picture costs nothing.
@@ -164,17 +167,10 @@ export class Model extends EventTarget {
     private frame(): void {
         this.frameIsDue = false;
         this.viewer.frame();
+        clearTimeout(this.lookAgainTimer);
         if (this.viewer.settled()) this.settledWaiters.splice(0).forEach((resolve) => resolve());
-        else this.lookAgain();
+        else this.lookAgainTimer = setTimeout(() => this.wake(), retryPauseMs);
         this.report();
-    }
-
-    /** What failed is tried again after a pause, and no arrival tells when that is over. */
-    private lookAgain(): void {
-        this.lookAgainTimer ??= setTimeout(() => {
-            this.lookAgainTimer = undefined;
-            this.wake();
-        }, 200);
     }
 
     /** Tells the elements, at most ten times a second. */

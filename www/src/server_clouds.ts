@@ -2,7 +2,7 @@
 export interface ListedCloud {
     id: string;
     name: string;
-    /** Of the file, relative to the page. */
+    /** Of the file, absolute or relative to the page. */
     address: string;
     pointCount: number;
 }
@@ -13,6 +13,5 @@ export async function listClouds(): Promise<ListedCloud[]> {
     if (response.status === 404) return [];
     if (!response.ok) throw new Error(`The server's list of clouds can't be had: status ${response.status}.`);
     if (!response.headers.get('content-type')?.includes('json')) return [];
-    const list = (await response.json()) as ListedCloud[] | { clouds: ListedCloud[] };
-    return Array.isArray(list) ? list : list.clouds;
+    return ((await response.json()) as { clouds: ListedCloud[] }).clouds;
 }

@@ -155,7 +155,7 @@ export class App extends ModelElement {
                 font-size: 1.2rem;
                 pointer-events: none;
             }
-            @media (max-width: 640px) {
+            @media (max-width: 600px) {
                 :host {
                     grid-template-columns: 1fr;
                     grid-template-rows: 1fr auto auto;
@@ -193,7 +193,7 @@ export class App extends ModelElement {
 
     constructor() {
         super();
-        this.panelIsOpen = !matchMedia('(max-width: 640px)').matches;
+        this.panelIsOpen = !matchMedia('(max-width: 600px)').matches;
         this.countersAreOpen = false;
         this.isDropTarget = false;
     }

@@ -69,6 +69,25 @@ TEST_CASE("an answer brings a node whose arrays have their sizes") {
     CHECK(back->intensity.empty());
 }
 
+TEST_CASE("intensities alone travel without positions") {
+    DecodeJob job = sampleJob();
+    job.strata = 0;
+    CHECK(web::decodeJob(web::encodeJob(job)).ok());
+    ResidentNode node;
+    node.pointCount = node.totalPoints = 3;
+    node.intensity = {1, 2, 3};
+    auto back = web::decodeAnswer(web::encodeAnswer(node));
+    REQUIRE(back.ok());
+    CHECK(back->positionWords.empty());
+    CHECK(back->intensity.size() == 3);
+}
+
+TEST_CASE("an array that is neither whole nor absent is refused") {
+    ResidentNode node = sampleNode();
+    node.colourWords.push_back(9);
+    CHECK_FALSE(web::decodeAnswer(web::encodeAnswer(node)).ok());
+}
+
 TEST_CASE("an error keeps its code and its words") {
     Error error{ErrorCode::corrupt, "the checksum is wrong", "town.stipple, byte 4096", "convert it again"};
     auto back = web::decodeAnswer(web::encodeAnswer(error));
