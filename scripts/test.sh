@@ -23,6 +23,7 @@ step "WebAssembly build and page"
 scripts/build_web.sh
 
 step "WebAssembly tests"
+configure_and_build wasm
 ctest --test-dir build/wasm --output-on-failure --no-tests=error
 
 step "parsers and decoders under the sanitizers"

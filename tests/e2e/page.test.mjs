@@ -1,0 +1,342 @@
+// The page against the real server: it opens, draws what the native program draws, obeys its controls, rests
+// when nothing changes, and says what went wrong.
+import assert from 'node:assert/strict';
+import { copyFile, readFile, rename } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+
+import {
+    counters,
+    keepScreenshot,
+    launch,
+    openPage,
+    readPixels,
+    settle,
+    settleWithPoints,
+} from './support/browser.mjs';
+import { compare, coverage, readPng } from './support/picture.mjs';
+import { makeTown, scratchFolder, serve, stipple } from './support/program.mjs';
+
+let browser, folder, town, server;
+
+before(async () => {
+    folder = await scratchFolder();
+    town = await makeTown(folder.path);
+    server = await serve(town);
+    browser = await launch();
+});
+
+after(async () => {
+    await browser?.close();
+    await server?.stop();
+    await folder?.cleanUp();
+});
+
+/** The page with the town, drawn whole. */
+async function openTown(options) {
+    const opened = await openPage(browser, options);
+    await opened.page.goto(server.address);
+    await settleWithPoints(opened.page);
+    return opened;
+}
+
+function report(what, figures) {
+    console.log(`  ${what}: ${JSON.stringify(figures)}`);
+}
+
+describe('opening', () => {
+    test("the server's cloud opens and is drawn, and nothing complains", async () => {
+        const { page, complaints } = await openPage(browser);
+        const start = performance.now();
+        await page.goto(server.address);
+        await page.waitForFunction(() => window.stipple?.counters().frame.pointsDrawn > 0);
+        const firstPicture = performance.now() - start;
+        const { frame, session } = await settleWithPoints(page);
+        const whole = performance.now() - start;
+
+        const covered = coverage(await readPixels(page));
+        report('opened', {
+            firstPictureMs: Math.round(firstPicture),
+            wholePictureMs: Math.round(whole),
+            requests: session.requests,
+            bytesReceived: session.bytesReceived,
+            pointsDrawn: frame.pointsDrawn,
+            covered: Number(covered.toFixed(3)),
+        });
+        assert.ok(frame.complete);
+        assert.ok(covered > 0.1, `only ${covered} of the canvas is covered`);
+        await keepScreenshot(page, 'opened');
+        assert.deepEqual(complaints, []);
+        await page.close();
+    });
+
+    test('a file that is dropped on the page opens without the server', async () => {
+        const { page, complaints } = await openPage(browser);
+        await page.goto(`${server.address}?cloud=`);
+        await page.waitForFunction(() => window.stipple !== undefined);
+        const before = await counters(page);
+        const base64 = (await readFile(town)).toString('base64');
+        const dropped = await page.evaluateHandle((text) => {
+            const bytes = Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([bytes], 'dropped.stipple'));
+            return transfer;
+        }, base64);
+        await page.dispatchEvent('body', 'dragenter', { dataTransfer: dropped });
+        await page.getByText('Drop a .stipple file to open it').waitFor();
+        await page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
+
+        const { frame } = await settleWithPoints(page);
+        assert.equal(before.frame.pointsDrawn, 0);
+        assert.ok(frame.pointsDrawn > 10_000);
+        await page.getByText('dropped.stipple').waitFor();
+        assert.deepEqual(complaints, []);
+        await page.close();
+    });
+
+    test('a file that is chosen with the button opens', async () => {
+        const { page } = await openPage(browser);
+        await page.goto(`${server.address}?cloud=`);
+        await page.locator('input[type=file]').setInputFiles(town);
+        const { frame } = await settleWithPoints(page);
+        assert.ok(frame.pointsDrawn > 10_000);
+        await page.close();
+    });
+});
+
+describe('the picture', () => {
+    const size = { width: 640, height: 480 };
+    // Both draw with the same shaders, but the drivers place points on sub-pixel grids of their own (1/16 and
+    // 1/256 px), so an edge near a pixel's centre may fall on either side of it: the more edge there is in the
+    // picture, the more pixels differ, by whatever lies beside them.
+    const looks = {
+        'RGB, circles of 3 px': {
+            style: { colourMode: 'rgb', sizePixels: 3 },
+            tolerance: { share: 0.01, mean: 0.5 },
+        },
+        'elevation, squares of 5 px': {
+            style: { colourMode: 'elevation', gradient: 'turbo', shape: 'square', sizePixels: 5 },
+            tolerance: { share: 0.03, mean: 1 },
+        },
+        'intensity, world sizes, no EDL': {
+            style: { colourMode: 'intensity', sizeMode: 'world', sizeWorld: 0.5, edl: { enabled: false } },
+            tolerance: { share: 0.03, mean: 1 },
+        },
+    };
+
+    for (const [name, { style, tolerance }] of Object.entries(looks)) {
+        test(`equals the native GLES picture: ${name}`, async () => {
+            const { page } = await openTown(size);
+            await page.evaluate((s) => window.stipple.setStyle(s), style);
+            await settle(page);
+            const drawn = await readPixels(page);
+            const camera = await page.evaluate(() => window.stipple.camera());
+            const { frame } = await counters(page);
+
+            const output = join(folder.path, 'native.png');
+            const said = JSON.parse(
+                await stipple(
+                    'render', town, '-o', output, '--backend', 'gles', '--json',
+                    '--size', `${size.width}x${size.height}`,
+                    '--view', JSON.stringify(camera),
+                    '--style', JSON.stringify(style),
+                ),
+            );
+            const difference = compare(drawn, await readPng(output));
+            report('differs from native', difference);
+            assert.equal(frame.pointsDrawn, said.frame.pointsDrawn);
+            assert.equal(frame.nodesDrawn, said.frame.nodesDrawn);
+            assert.ok(difference.share <= tolerance.share, `${difference.differing} pixels differ`);
+            assert.ok(difference.mean <= tolerance.mean, `the mean difference is ${difference.mean}`);
+            await page.close();
+        });
+    }
+
+    test('follows the budget', async () => {
+        const { page } = await openTown();
+        const before = await counters(page);
+        await page.getByLabel('Budget').fill('0'); // the slider's lower end: 10,000 points
+        const after = await settle(page);
+        assert.ok(after.frame.pointsDrawn <= 10_000);
+        assert.ok(after.frame.pointsDrawn < before.frame.pointsDrawn);
+        assert.ok(after.frame.pointsDrawn > 0);
+        assert.ok(after.frame.nodesSelected < before.frame.nodesSelected);
+        await page.close();
+    });
+
+    test('follows the colour, the size and the light', async () => {
+        const { page } = await openTown();
+        const shareChangedBy = async (act) => {
+            const from = await readPixels(page);
+            await act();
+            await settle(page);
+            return compare(from, await readPixels(page)).share;
+        };
+        const shares = {
+            colour: await shareChangedBy(() => page.getByLabel('Colour by').selectOption('elevation')),
+            gradient: await shareChangedBy(() => page.getByLabel('Gradient').selectOption('inferno')),
+            size: await shareChangedBy(() => page.getByLabel('Size', { exact: true }).fill('700')),
+            shape: await shareChangedBy(() => page.getByLabel('Shape: Square').check()),
+            light: await shareChangedBy(() => page.getByLabel('Eye-dome lighting').uncheck()),
+            view: await shareChangedBy(() => page.getByRole('button', { name: 'Top' }).click()),
+            projection: await shareChangedBy(() => page.getByLabel('Projection: Ortho.').check()),
+        };
+        report('share of pixels changed', shares);
+        for (const [control, share] of Object.entries(shares))
+            assert.ok(share > 0.005, `${control} changed ${share} of the picture`);
+        await keepScreenshot(page, 'controls');
+        await page.close();
+    });
+});
+
+describe('moving', () => {
+    const camera = (page) => page.evaluate(() => window.stipple.camera());
+
+    test('mouse, wheel and keys move the camera', async () => {
+        const { page } = await openTown();
+        const start = await camera(page);
+        await page.mouse.move(450, 240);
+        await page.mouse.down();
+        await page.mouse.move(520, 260, { steps: 5 });
+        await page.mouse.up();
+        const orbited = await camera(page);
+        assert.notDeepEqual(orbited.position, start.position);
+        assert.deepEqual(orbited.target, start.target);
+
+        await page.mouse.down({ button: 'right' });
+        await page.mouse.move(480, 220, { steps: 5 });
+        await page.mouse.up({ button: 'right' });
+        const panned = await camera(page);
+        assert.notDeepEqual(panned.target, orbited.target);
+
+        const distance = (c) => Math.hypot(...c.position.map((value, axis) => value - c.target[axis]));
+        await page.mouse.wheel(0, -400);
+        await page.waitForFunction((old) => window.stipple.camera().position[0] !== old, panned.position[0]);
+        assert.ok(distance(await camera(page)) < distance(panned));
+
+        await page.locator('canvas').press('1');
+        await settle(page);
+        const top = await camera(page);
+        assert.ok(Math.abs(top.position[0] - top.target[0]) < 1e-6 * distance(top));
+        await page.close();
+    });
+
+    test('a still camera draws no frame and asks for nothing', async () => {
+        const { page } = await openTown();
+        await page.waitForTimeout(300);
+        const before = await counters(page);
+        await page.waitForTimeout(1500);
+        const after = await counters(page);
+        assert.deepEqual(after, before);
+        assert.equal(after.settled, true);
+        report('after 1.5 s of rest', { framesDrawn: after.session.framesDrawn, requests: after.session.requests });
+
+        await page.evaluate(() => window.stipple.setCamera(window.stipple.camera()));
+        await settle(page);
+        const same = await counters(page);
+        assert.equal(same.session.framesDrawn, before.session.framesDrawn);
+        await page.close();
+    });
+
+    test('a lost WebGL context comes back with the picture', async () => {
+        const { page } = await openTown();
+        const before = await readPixels(page);
+        await page.evaluate(async () => {
+            const loss = document.querySelector('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
+            const next = (name) =>
+                new Promise((resolve) => document.querySelector('canvas').addEventListener(name, resolve, { once: true }));
+            const lost = next('webglcontextlost');
+            loss.loseContext();
+            await lost;
+            const restored = next('webglcontextrestored');
+            setTimeout(() => loss.restoreContext(), 50);
+            await restored;
+        });
+        await settle(page);
+        assert.equal(compare(before, await readPixels(page)).differing, 0);
+        await page.close();
+    });
+});
+
+describe('what goes wrong is said in words', () => {
+    const alert = async (address, options = {}) => {
+        const { page } = await openPage(browser);
+        await options.prepare?.(page);
+        await page.goto(address);
+        const box = page.getByRole('alert').first();
+        await box.waitFor();
+        const text = await box.textContent();
+        await keepScreenshot(page, options.name ?? 'alert');
+        await page.close();
+        return text;
+    };
+
+    test('a cloud that is not there', async () => {
+        const text = await alert(`${server.address}?cloud=absent.stipple`, { name: 'absent' });
+        assert.match(text, /absent\.stipple: there is no such file on the server/);
+    });
+
+    test('a file that is no cloud', async () => {
+        const text = await alert(`${server.address}?cloud=index.html`);
+        assert.match(text, /index\.html/);
+    });
+
+    test('a server that ignores Range', async () => {
+        const bytes = await readFile(town);
+        const plain = createServer((_, response) => {
+            response.writeHead(200, { 'content-length': bytes.length, 'access-control-allow-origin': '*' });
+            response.end(bytes);
+        });
+        await new Promise((resolve) => plain.listen(0, '127.0.0.1', resolve));
+        const cloud = `http://127.0.0.1:${plain.address().port}/town.stipple`;
+        const text = await alert(`${server.address}?cloud=${encodeURIComponent(cloud)}`);
+        assert.match(text, /the server ignores Range and sends the whole file/);
+        plain.closeAllConnections();
+        await new Promise((resolve) => plain.close(resolve));
+    });
+
+    test('a server that is not there', async () => {
+        const cloud = encodeURIComponent('http://127.0.0.1:9/town.stipple');
+        const text = await alert(`${server.address}?cloud=${cloud}`);
+        assert.match(text, /the server can't be reached/);
+    });
+
+    test('a browser without WebGL2', async () => {
+        const text = await alert(server.address, {
+            prepare: (page) =>
+                page.addInitScript(() => {
+                    const getContext = HTMLCanvasElement.prototype.getContext;
+                    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+                        return kind === 'webgl2' ? null : getContext.call(this, kind, ...rest);
+                    };
+                }),
+        });
+        assert.match(text, /gives the page no WebGL2/);
+    });
+
+    test('a file that is replaced while it is looked at', async () => {
+        const replaced = join(folder.path, 'replaced.stipple');
+        await copyFile(town, replaced);
+        const other = await makeTown(folder.path, { seed: 2, name: 'other', points: 70_000 });
+        const own = await serve(replaced);
+        const { page } = await openPage(browser);
+        // A budget this small leaves most of the file unread.
+        await page.addInitScript(() => {
+            const open = setInterval(() => {
+                if (!window.stipple) return;
+                clearInterval(open);
+                window.stipple.setLimits({ pointBudget: 1000 });
+            }, 1);
+        });
+        await page.goto(own.address);
+        await page.waitForFunction(() => window.stipple?.counters().frame.nodesKnown > 0);
+        await page.evaluate(() => window.stipple.settled());
+        await rename(other, replaced);
+        await page.evaluate(() => window.stipple.setLimits({ pointBudget: 1_000_000 }));
+        await page.getByText(/the file was replaced while it was being read/).first().waitFor();
+        await keepScreenshot(page, 'replaced');
+        await page.close();
+        await own.stop();
+    });
+});
