@@ -2,11 +2,14 @@ import { html, render } from 'lit';
 
 import { followDrops, followInput } from './input.ts';
 import { Model, messageOf } from './model.ts';
+import { listClouds, type ListedCloud } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
 import type { App } from './ui/app.ts';
 import './ui/app.ts';
 
 async function start(): Promise<void> {
+    const list = listClouds(); // travels while the program loads
+    list.catch(() => {}); // told by the model
     const canvas = document.createElement('canvas');
     canvas.tabIndex = 0;
     canvas.setAttribute(
@@ -24,14 +27,14 @@ async function start(): Promise<void> {
     const app = layer.querySelector<App>('stipple-app')!;
     followDrops(model, (isOver) => (app.isDropTarget = isOver));
 
-    await openClouds(model);
+    await openClouds(model, list);
 }
 
 /** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
-async function openClouds(model: Model): Promise<void> {
+async function openClouds(model: Model, list: Promise<ListedCloud[]>): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('cloud');
     named.forEach((address) => model.openAddress(address));
-    await model.loadList();
+    await model.takeList(list);
     const first = model.listed[0];
     if (named.length === 0 && first) model.openAddress(first.address, first.name);
 }

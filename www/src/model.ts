@@ -1,4 +1,4 @@
-import { listClouds, type ListedCloud } from './server_clouds.ts';
+import type { ListedCloud } from './server_clouds.ts';
 import type { CloudState, Counters, Limits, NamedView, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
@@ -42,10 +42,10 @@ export class Model extends EventTarget {
 
     // Clouds
 
-    /** Asks the server what it has; a plain file host has no list, which is no error. */
-    async loadList(): Promise<void> {
+    /** What the server has; a plain file host has no list, which is no error. */
+    async takeList(list: Promise<ListedCloud[]>): Promise<void> {
         try {
-            this.listed = await listClouds();
+            this.listed = await list;
         } catch (error) {
             this.listError = messageOf(error);
         }
