@@ -253,7 +253,7 @@ HouseModel makeHouse(const HouseOptions& o, Random random) {
     return house;
 }
 
-Model makeChurch(Random random) {
+Model makeChurch() {
     Model m;
     constexpr double halfWidth = 6, naveSize = 26, eaves = 9, ridge = 16;
     double y0 = -naveSize / 2, y1 = naveSize / 2;
@@ -302,7 +302,6 @@ Model makeChurch(Random random) {
     m.cylinder({0, ty, spire - 0.3}, {0, ty, spire + 1.6}, 0.06, Material::gutter);
     m.cylinder({-0.5, ty, spire + 1.0}, {0.5, ty, spire + 1.0}, 0.05, Material::gutter);
     m.frustum({0, ty, 20}, {0, ty, 21.2}, 0.7, 0.3, Material::gutter);
-    (void)random;
     return m;
 }
 

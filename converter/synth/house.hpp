@@ -29,7 +29,7 @@ HouseModel makeHouse(const HouseOptions& options, Random random);
 // One of the varied one-family houses.
 HouseOptions randomHouse(Random random);
 
-Model makeChurch(Random random); // nave along y, tower at -y
+Model makeChurch(); // nave along y, tower at -y
 Model makeTowerBlock(int storeys, double width, double depth);
 Model makeHall(double width, double depth, double height); // shop or workshop, flat roof
 Model makeShed();

@@ -1,6 +1,5 @@
 // `stipple synth`: a simulated scan as a LAS file.
 #include "converter/synth/synthesize.hpp"
-#include "shared/base/text.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -16,7 +15,7 @@ namespace stipple {
 namespace {
 
 struct Arguments {
-    std::string output;
+    std::string output, scene = "town";
     synth::SynthOptions options;
     bool json = false, quiet = false;
 };
@@ -26,6 +25,7 @@ void print(const Arguments& arguments, const synth::SynthReport& report, double 
     if (arguments.json) {
         nlohmann::json answer = {{"file", arguments.output},
                                  {"points", report.points},
+                                 {"scene", arguments.scene},
                                  {"seed", arguments.options.seed},
                                  {"strips", report.strips},
                                  {"stations", report.stations},
@@ -42,7 +42,14 @@ void print(const Arguments& arguments, const synth::SynthReport& report, double 
                 report.stations, seconds, rate / 1e6);
 }
 
-int run(const Arguments& arguments) {
+synth::SceneKind kindOf(const std::string& name) {
+    return name == "indoor"    ? synth::SceneKind::indoor
+           : name == "terrain" ? synth::SceneKind::terrain
+                               : synth::SceneKind::town;
+}
+
+int run(Arguments arguments) {
+    arguments.options.scene = kindOf(arguments.scene);
     auto start = std::chrono::steady_clock::now();
     cli::Progress progress(arguments.quiet || arguments.json);
     auto report =
@@ -68,21 +75,19 @@ void addSynthVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("OUT", arguments->output, "The LAS file to write")->required();
     verb->add_option("--points", arguments->options.points, "How many points to write, exactly")
         ->required()
-        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000'000}));
-    verb->add_option("--scene", arguments->options.scene,
-                     "town (strips and stations), indoor (stations), terrain (strips)")
-        ->transform(CLI::CheckedTransformer(
-            std::map<std::string, synth::SceneKind>{{"town", synth::SceneKind::town},
-                                                    {"indoor", synth::SceneKind::indoor},
-                                                    {"terrain", synth::SceneKind::terrain}},
-            CLI::ignore_case))
-        ->default_str("town");
+        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000'000}))
+        ->type_name("COUNT");
+    verb->add_option("--scene", arguments->scene,
+                     "town (strips and stations), indoor (stations) or terrain (strips)")
+        ->check(CLI::IsMember({"town", "indoor", "terrain"}))
+        ->capture_default_str();
     verb->add_option("--seed", arguments->options.seed, "Same seed, same bytes")->capture_default_str();
     verb->add_option("--threads", arguments->options.threads,
                      "Threads to use; the output does not depend on it")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
-    verb->add_option("--noise", arguments->options.noiseMeters, "Deviation of the range error, metres")
+    verb->add_option("--noise", arguments->options.noiseMeters,
+                     "Deviation of the range error, metres; 0: every point exactly on the surface")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
     verb->add_flag("--json", arguments->json, "Print the report as JSON");

@@ -87,13 +87,13 @@ class Collector {
 
     Status take(std::size_t source, std::uint64_t block, PointBatch batch) {
         std::uint64_t blocksPlanned = plan_.firstBlock[source + 1] - plan_.firstBlock[source];
-        STIPPLE_CHECK(add(source, block, std::move(batch)));
+        STIPPLE_CHECK(add(source, std::move(batch)));
         if (block + 1 < blocksPlanned)
             return {};
         std::uint64_t empty = 0;
         for (std::uint64_t extra = block + 1; taken_ < plan_.quota[source]; ++extra) {
             std::uint64_t before = taken_;
-            STIPPLE_CHECK(add(source, extra, scan_(source, extra)));
+            STIPPLE_CHECK(add(source, scan_(source, extra)));
             empty = taken_ == before ? empty + 1 : 0;
             if (empty > 1000)
                 return Error{ErrorCode::limitExceeded,
@@ -107,7 +107,7 @@ class Collector {
     SynthReport report;
 
   private:
-    Status add(std::size_t source, std::uint64_t, PointBatch batch) {
+    Status add(std::size_t source, PointBatch batch) {
         std::uint64_t left = plan_.quota[source] - taken_;
         if (left == 0)
             return {};
@@ -115,7 +115,6 @@ class Collector {
                  columns_);
         taken_ += batch.size();
         report.points += batch.size();
-        report.pulses += pulsesPerBlock;
         STIPPLE_CHECK(sink_(batch));
         if (progress_)
             progress_(report.points, options_.points);

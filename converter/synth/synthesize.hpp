@@ -4,7 +4,7 @@
 // has delivered it; a source that has too few pulses goes over its pattern again. The town and the terrain
 // grow with the cube root of the number of points, so do the distances between points shrink; see sideFor().
 // Same options, same bytes, for any number of threads. Memory does not depend on `points` but through the
-// size of the scene, which is bounded: under 1 GiB.
+// size of the scene, which is bounded: 220 MB at most.
 #pragma once
 
 #include "converter/synth/scene.hpp"
@@ -27,7 +27,7 @@ struct SynthOptions {
 };
 
 struct SynthReport {
-    std::uint64_t points = 0, pulses = 0;
+    std::uint64_t points = 0;
     std::size_t strips = 0, stations = 0;
     double sideMeters = 0;
     std::size_t sceneObjects = 0, scenePrimitives = 0;

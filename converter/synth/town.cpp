@@ -314,7 +314,7 @@ void TownBuilder::fillChurch(Block& block) {
     const Rect& a = block.area;
     double cu = (a.u0 + a.u1) / 2, cv = (a.v0 + a.v1) / 2;
     block.paved.push_back({a.u0 + 3, a.v0 + 2, a.u1 - 3, a.v1 - 2});
-    Prototype church{scene_.addMesh(makeChurch(random_.child(900))), 14, 34, {0, 4, 1.7}};
+    Prototype church{scene_.addMesh(makeChurch()), 14, 34, {0, 4, 1.7}};
     putBuilding(church, cu + 3, cv, -pi / 2, 0.35);
     for (double u = a.u0 + 5; u < a.u1 - 4; u += 8)
         for (double v : {a.v0 + 4, a.v1 - 4})
