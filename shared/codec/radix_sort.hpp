@@ -19,7 +19,9 @@ inline void radixSort(std::vector<KeyedIndex>& items, int bits) {
     constexpr std::size_t digits = std::size_t{1} << digitBits;
     std::vector<KeyedIndex> other(items.size());
     for (int shift = 0; shift < bits; shift += digitBits) {
-        auto digit = [shift](const KeyedIndex& item) { return (item.key >> shift) & (digits - 1); };
+        auto digit = [shift](const KeyedIndex& item) {
+            return static_cast<std::size_t>(item.key >> shift) & (digits - 1);
+        };
         std::array<std::uint32_t, digits> start{};
         for (const KeyedIndex& item : items)
             ++start[digit(item)];
