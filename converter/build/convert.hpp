@@ -22,9 +22,9 @@
 namespace stipple {
 
 struct ConvertOptions {
-    std::string name; // of the cloud; empty: the output's file name without its extension
-    std::string crs;  // "EPSG:n", for inputs that state none; empty: what the inputs state
-    int threads = 0;  // 0: one for each core
+    std::string name = {}; // of the cloud; empty: the output's file name without its extension
+    std::string crs = {};  // "EPSG:n", for inputs that state none; empty: what the inputs state
+    int threads = 0;       // 0: one for each core
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;
     const std::atomic<bool>* stop = nullptr; // once true, the conversion ends with `cancelled`

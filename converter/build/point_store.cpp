@@ -1,5 +1,7 @@
 #include "converter/build/point_store.hpp"
 
+#include <algorithm>
+
 namespace stipple {
 
 namespace {
@@ -47,13 +49,21 @@ void PointStore::put(std::size_t first, const PointBatch& batch) {
 }
 
 void PointStore::gather(std::span<const std::uint32_t> indices, PointBatch& batch) const {
+    constexpr std::size_t blockPoints = 512; // rows that stay in the cache from one attribute to the next
     batch.resize(schema_, indices.size());
-    for (std::size_t i = 0; i < indices.size(); ++i)
-        batch.positions[i] = position(indices[i]);
-    for (std::size_t a = 0; a < offsets_.size(); ++a) {
-        std::size_t size = schema_.attributes[a].size();
-        copyStrided(size, indices.size(), rows_.get() + offsets_[a], rowBytes_, batch.columns[a].data(), size,
-                    [&](std::size_t i) { return indices[i]; });
+    for (std::size_t first = 0; first < indices.size(); first += blockPoints) {
+        std::span<const std::uint32_t> block =
+            indices.subspan(first, std::min(blockPoints, indices.size() - first));
+        for (std::uint32_t index : block)
+            prefetch(index);
+        for (std::size_t i = 0; i < block.size(); ++i)
+            batch.positions[first + i] = position(block[i]);
+        for (std::size_t a = 0; a < offsets_.size(); ++a) {
+            std::size_t size = schema_.attributes[a].size();
+            copyStrided(size, block.size(), rows_.get() + offsets_[a], rowBytes_,
+                        batch.columns[a].data() + first * size, size,
+                        [&](std::size_t i) { return block[i]; });
+        }
     }
 }
 

@@ -29,6 +29,9 @@ class PointStore {
     const std::uint8_t* row(std::size_t index) const { return rows_.get() + index * rowBytes_; }
     const std::uint8_t* attributes(std::size_t index) const { return row(index) + sizeof(Vec3i); }
 
+    // Asks for a row that will be read soon.
+    void prefetch(std::size_t index) const { __builtin_prefetch(row(index)); }
+
     // Fills rows [first, first + batch.size()). Thread: any, for ranges that do not overlap.
     void put(std::size_t first, const PointBatch& batch);
     // The points of these indices as columns.

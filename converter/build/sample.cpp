@@ -4,7 +4,6 @@
 #include "converter/build/parallel.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <mutex>
 #include <numeric>
 #include <unordered_map>
@@ -20,10 +19,16 @@ struct Worker {
     std::vector<std::uint8_t> taken;            // parallel to candidates
 };
 
-std::uint32_t reversedBits(std::uint32_t value, int bits) {
+// Points are visited in blocks of so many neighbours in Morton order, and spread evenly inside a block: the
+// cells they look into stay in the cache.
+constexpr int visitBits = 12;
+constexpr std::uint32_t visitBlock = 1u << visitBits;
+constexpr std::size_t prefetchAhead = 24;
+
+constexpr std::uint32_t reversedBits(std::uint32_t value) {
     std::uint32_t result = 0;
-    for (int i = 0; i < bits; ++i)
-        result |= (value >> i & 1u) << (bits - 1 - i);
+    for (int i = 0; i < visitBits; ++i)
+        result |= (value >> i & 1u) << (visitBits - 1 - i);
     return result;
 }
 
@@ -85,6 +90,8 @@ class Sampling {
         for (std::int32_t child : tiles_.nodes[index].children)
             if (child >= 0 && tiles_.nodes[static_cast<std::size_t>(child)].isLeaf)
                 points += tiles_.nodes[static_cast<std::size_t>(child)].count;
+        if (points == 0)
+            return;
         std::lock_guard lock(progressMutex_);
         done_ += points;
         progress("sample", done_, tiles_.order.size());
@@ -117,6 +124,8 @@ class Sampling {
         Vec3i corner = tiles_.rootCube.nodeMin(node.key);
         worker.positions.resize(worker.candidates.size());
         for (std::size_t i = 0; i < worker.candidates.size(); ++i) {
+            if (i + prefetchAhead < worker.candidates.size())
+                tiles_.prefetch(worker.candidates[i + prefetchAhead]);
             Vec3i p = tiles_.position(worker.candidates[i]) - corner;
             worker.positions[i] = {static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y),
                                    static_cast<std::uint32_t>(p.z)};
@@ -156,14 +165,14 @@ class Sampling {
     void choose(std::size_t index, int bits, Worker& worker) {
         auto count = static_cast<std::uint32_t>(worker.candidates.size());
         worker.taken.assign(count, 0);
-        int reverse = count > 1 ? std::bit_width(count - 1) : 0;
-        for (std::uint32_t i = 0; i < (std::uint32_t{1} << reverse); ++i) {
-            std::uint32_t at = reversedBits(i, reverse);
-            if (at >= count)
-                continue;
-            Vec3<std::uint32_t> p = worker.positions[at];
-            worker.taken[at] = worker.sampler.accept({p.x, p.y, p.z}) ? 1 : 0;
-        }
+        for (std::uint32_t block = 0; block < count; block += visitBlock)
+            for (std::uint32_t i = 0; i < visitBlock; ++i) {
+                std::uint32_t at = block + reversedBits(i);
+                if (at >= count)
+                    continue;
+                Vec3<std::uint32_t> p = worker.positions[at];
+                worker.taken[at] = worker.sampler.accept({p.x, p.y, p.z}) ? 1 : 0;
+            }
         noteBorder(index, bits, worker);
     }
 

@@ -5,7 +5,7 @@
 // its sample without what its parent then takes. So coarse nodes are thinned versions of what is below them
 // and leaves keep the rest, duplicates included.
 //
-// Points are visited in bit-reversed Morton order, which spreads them evenly from the first on. Nodes of one
+// Points are visited in bit-reversed Morton order, block by block, which spreads them evenly. Nodes of one
 // level are worked on in eight rounds, by the parity of their coordinates: nodes of one round do not touch,
 // and a later round keeps its distance from what earlier rounds took near the border. So the minimum distance
 // holds across borders too, and the outcome does not depend on the number of threads.

@@ -20,7 +20,7 @@ DistanceMetric distanceMetric(const Grid& grid, const Crs& crs);
 // 2^(density / 2) minimum distances wide.
 struct Spacing {
     DistanceMetric metric;
-    int density = 16;
+    int density = 16; // 2 to 16
 
     double squaredSteps(int nodeBits) const; // the square of the distance, in weighted steps
     double world(int nodeBits) const;        // never more than what sampling keeps

@@ -1,8 +1,8 @@
 #include "converter/build/statistics.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
 #include <type_traits>
 
 namespace stipple {
@@ -14,25 +14,29 @@ bool isInteger(AttributeType type) {
     return type != AttributeType::f32 && type != AttributeType::f64;
 }
 
+// Counts each value in [low, low + counts): false if there are too many different ones.
 template <class T>
-void countBytes(const Bytes& column, std::map<std::int64_t, std::uint64_t>& histogram) {
-    std::array<std::uint64_t, 256> counts{};
-    for (std::uint8_t byte : column)
-        ++counts[byte];
-    for (std::size_t byte = 0; byte < 256; ++byte)
-        if (counts[byte] > 0)
-            histogram[static_cast<T>(byte)] = counts[byte];
+bool countInTable(const Bytes& column, std::size_t values, T low, std::size_t range,
+                  std::map<std::int64_t, std::uint64_t>& histogram) {
+    std::vector<std::uint32_t> counts(range, 0);
+    for (std::size_t i = 0; i < values; ++i)
+        ++counts[static_cast<std::size_t>(
+            static_cast<std::int64_t>(loadLe<T>(column.data() + i * sizeof(T))) -
+            static_cast<std::int64_t>(low))];
+    for (std::size_t v = 0; v < range; ++v) {
+        if (counts[v] > 0)
+            histogram[static_cast<std::int64_t>(low) + static_cast<std::int64_t>(v)] = counts[v];
+        if (histogram.size() > maxHistogramValues)
+            return false;
+    }
+    return true;
 }
 
-// False if there are too many values.
+// The same for values that lie far apart.
 template <class T>
-bool countValues(const Bytes& column, std::size_t values, std::map<std::int64_t, std::uint64_t>& histogram) {
-    auto last = histogram.end();
+bool countInMap(const Bytes& column, std::size_t values, std::map<std::int64_t, std::uint64_t>& histogram) {
     for (std::size_t i = 0; i < values; ++i) {
-        auto value = static_cast<std::int64_t>(loadLe<T>(column.data() + i * sizeof(T)));
-        if (last == histogram.end() || last->first != value)
-            last = histogram.try_emplace(value, 0).first; // runs of one value cost no search
-        ++last->second;
+        ++histogram[static_cast<std::int64_t>(loadLe<T>(column.data() + i * sizeof(T)))];
         if (histogram.size() > maxHistogramValues)
             return false;
     }
@@ -40,11 +44,67 @@ bool countValues(const Bytes& column, std::size_t values, std::map<std::int64_t,
 }
 
 template <class T>
+bool countValues(const Bytes& column, std::size_t values, T low, T high,
+                 std::map<std::int64_t, std::uint64_t>& histogram) {
+    constexpr std::uint64_t maxTable = 65536;
+    std::uint64_t range = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low);
+    if (range < maxTable)
+        return countInTable<T>(column, values, low, static_cast<std::size_t>(range) + 1, histogram);
+    return countInMap<T>(column, values, histogram);
+}
+
+// Mean and squares of values of at most 16 bits, from exact sums, which also vectorize.
+template <class T>
+void sumSmall(const Bytes& column, std::size_t values, PartialStatistics& result) {
+    std::int64_t sum = 0;
+    std::uint64_t squares = 0;
+    for (std::size_t i = 0; i < values; ++i) {
+        std::int32_t value = loadLe<T>(column.data() + i * sizeof(T));
+        sum += value;
+        squares += static_cast<std::uint64_t>(static_cast<std::int64_t>(value) * value);
+    }
+    auto count = static_cast<double>(values);
+    auto rest =
+        static_cast<__int128>(squares) * static_cast<__int128>(values) - static_cast<__int128>(sum) * sum;
+    result.mean = static_cast<double>(sum) / count;
+    result.squares = static_cast<double>(rest) / count;
+}
+
+template <class T>
+void sumWide(const Bytes& column, std::size_t values, PartialStatistics& result) {
+    double sum = 0;
+    for (std::size_t i = 0; i < values; ++i) {
+        auto value = static_cast<double>(loadLe<T>(column.data() + i * sizeof(T)));
+        sum += std::isnan(value) ? 0 : value;
+    }
+    result.mean = sum / static_cast<double>(result.count);
+    for (std::size_t i = 0; i < values; ++i) {
+        double distance = static_cast<double>(loadLe<T>(column.data() + i * sizeof(T))) - result.mean;
+        result.squares += std::isnan(distance) ? 0 : distance * distance;
+    }
+}
+
+// All values are the first one: many attributes of many scans are not used.
+template <class T>
+bool isConstant(const Bytes& column) {
+    return column.size() > sizeof(T) &&
+           std::memcmp(column.data(), column.data() + sizeof(T), column.size() - sizeof(T)) == 0;
+}
+
+template <class T>
 PartialStatistics ofColumn(const Attribute& attribute, const Bytes& column) {
+    if (isConstant<T>(column)) {
+        Bytes first(column.begin(), column.begin() + sizeof(T));
+        PartialStatistics one = ofColumn<T>(attribute, first);
+        one.count *= column.size() / sizeof(T);
+        if (one.histogram)
+            for (auto& [value, points] : *one.histogram)
+                points *= column.size() / sizeof(T);
+        return one;
+    }
     PartialStatistics result;
     std::size_t values = column.size() / sizeof(T);
     T low{}, high{};
-    double sum = 0;
     for (std::size_t i = 0; i < values; ++i) {
         T value = loadLe<T>(column.data() + i * sizeof(T));
         if constexpr (std::is_floating_point_v<T>)
@@ -52,29 +112,22 @@ PartialStatistics ofColumn(const Attribute& attribute, const Bytes& column) {
                 continue;
         low = result.count == 0 ? value : std::min(low, value);
         high = result.count == 0 ? value : std::max(high, value);
-        sum += static_cast<double>(value);
         ++result.count;
     }
     result.min = static_cast<double>(low);
     result.max = static_cast<double>(high);
-    if (result.count > 0)
-        result.mean = sum / static_cast<double>(result.count);
-    if (low != high)
-        for (std::size_t i = 0; i < values; ++i) {
-            double distance = static_cast<double>(loadLe<T>(column.data() + i * sizeof(T))) - result.mean;
-            if (!std::isnan(distance))
-                result.squares += distance * distance;
-        }
-    else if (result.count > 0)
-        result.mean = result.min; // without the rounding of the sum
+    if (low == high)
+        result.mean = result.min; // without the rounding of a sum
+    else if constexpr (sizeof(T) <= 2)
+        sumSmall<T>(column, values, result);
+    else
+        sumWide<T>(column, values, result);
     if constexpr (std::is_integral_v<T>) {
-        // A uint64 beyond the range of the histogram's values is not counted by value.
+        // A uint64 may be beyond the range of the histogram's values.
         bool fits = std::is_signed_v<T> || sizeof(T) < 8;
         if (attribute.components == 1 && fits) {
             result.histogram.emplace();
-            if constexpr (sizeof(T) == 1)
-                countBytes<T>(column, *result.histogram);
-            else if (!countValues<T>(column, values, *result.histogram))
+            if (values > 0 && !countValues<T>(column, values, low, high, *result.histogram))
                 result.histogram.reset();
         }
     }

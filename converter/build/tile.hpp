@@ -29,6 +29,7 @@ struct Tiles {
     std::vector<TileNode> nodes;      // breadth-first; nodes[0] is the root; none for an empty cloud
 
     Vec3i position(std::uint32_t rank) const { return points.store.position(order[rank]); }
+    void prefetch(std::uint32_t rank) const { points.store.prefetch(order[rank]); }
 };
 
 // The smallest cube of 2^bits steps at the lowest corner of `bounds` that holds them. outOfRange if that
