@@ -36,6 +36,7 @@ constexpr auto answered = net::as_tuple(net::use_awaitable);
 // What is left of a cancelled answer is read to its end if it is this little: cheaper than connecting anew.
 constexpr std::uint64_t drainBytes = 64 * 1024;
 constexpr std::size_t readBufferBytes = 16 * 1024;
+constexpr std::size_t maxHeaderBytes = 64 * 1024;
 
 struct Job {
     ByteSource::RequestId id = 0;
@@ -216,10 +217,16 @@ class HttpSource final : public ByteSource {
 
         http::response_parser<http::vector_body<std::uint8_t>> parser;
         parser.body_limit(boost::none); // judged below, before any of it is stored
-        if (auto [error, got] =
-                co_await http::async_read_header(connection.stream, connection.buffer, parser, answered);
-            error)
-            co_return Attempt{readError(error), !parser.got_some() && error != beast::error::timeout};
+        // Counted here, because Beast bounds a single line of a header, not all of it.
+        for (std::size_t headerBytes = 0; !parser.is_header_done();) {
+            auto [error, got] =
+                co_await http::async_read_some(connection.stream, connection.buffer, parser, answered);
+            headerBytes += got;
+            if (error)
+                co_return Attempt{readError(error), !parser.got_some() && error != beast::error::timeout};
+            if (headerBytes > maxHeaderBytes)
+                co_return Attempt{networkError("the header of the answer has no end")};
+        }
 
         auto expected = judgeRangeAnswer(job.range, summary(parser), version_, name_);
         if (!expected)

@@ -85,8 +85,6 @@ const char* reasonPhrase(int status) {
         return "Not Found";
     case 405:
         return "Method Not Allowed";
-    case 408:
-        return "Request Timeout";
     case 412:
         return "Precondition Failed";
     case 413:

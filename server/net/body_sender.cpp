@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <cerrno>
@@ -97,6 +98,8 @@ class BodySender {
                 if (!slice.file->isUnchanged())
                     co_return false;
                 onProgress_();
+                // A client as fast as this loop must not keep the other connections waiting.
+                co_await net::post(socket_.get_executor(), net::use_awaitable);
                 untilProgress = std::min<std::uint64_t>(slice.size, pieceBytes);
             }
             off_t at = static_cast<off_t>(slice.offset);

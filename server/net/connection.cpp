@@ -2,12 +2,10 @@
 
 #include "server/net/body_sender.hpp"
 
+#include <algorithm>
 #include <boost/asio/as_tuple.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/error.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/read.hpp>
 #include <ctime>
 #include <sys/socket.h>
 
@@ -19,27 +17,25 @@ namespace net = boost::asio;
 namespace http = boost::beast::http;
 using Tcp = net::ip::tcp;
 using Failure = boost::system::error_code;
-using Parser = http::request_parser<http::empty_body>;
 constexpr auto answered = net::as_tuple(net::use_awaitable);
 constexpr std::chrono::milliseconds lingerTime{1000};
+constexpr std::size_t readBytes = 4096;
+// Outcomes of readHeader beside the status of a refusal.
+constexpr int headerRead = 0, clientLeft = -1;
 
-// Status for bytes that the parser refused; 0 if the client just left.
+// Status for bytes that the parser refused.
 int statusOf(const Failure& error) {
     if (error == http::error::header_limit || error == http::error::buffer_overflow)
         return 431;
-    if (error == http::error::bad_version)
-        return 505;
-    bool isParseError = error.category() == make_error_code(http::error::bad_method).category() &&
-                        error != http::error::end_of_stream && error != http::error::partial_message;
-    return isParseError ? 400 : 0;
+    return error == http::error::bad_version ? 505 : 400;
 }
 
 std::string_view view(boost::beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-HttpRequest requestOf(const Parser& parser) {
-    const auto& message = parser.get();
+template <class Message>
+HttpRequest requestOf(const Message& message) {
     HttpRequest request;
     request.method = view(message.method_string());
     request.target = view(message.target());
@@ -98,28 +94,50 @@ net::awaitable<bool> Connection::waitForRequest() {
         co_return false;
     isIdle_ = true;
     allow(limits_.idle);
-    constexpr std::size_t firstRead = 4096;
     auto [error, size] = co_await socket_.async_read_some(
-        buffer_.prepare(std::min(firstRead, limits_.requestHeaderBytes)), answered);
+        buffer_.prepare(std::min(readBytes, limits_.requestHeaderBytes)), answered);
     buffer_.commit(size);
     isIdle_ = false;
     co_return !error;
 }
 
-net::awaitable<bool> Connection::answerNext() {
+// Beast bounds a single line of a header, not all of it, so the bytes are counted here: a header without end
+// must not fill the memory.
+net::awaitable<int> Connection::readHeader(RequestParser& parser) {
     allow(limits_.header);
-    Parser parser;
     parser.header_limit(static_cast<std::uint32_t>(limits_.requestHeaderBytes));
     parser.body_limit(boost::none); // bodies are refused by the rules, with a status of their own
-    auto [error, size] = co_await http::async_read_header(socket_, buffer_, parser, answered);
-    if (error) {
-        int status = statusOf(error);
+    std::size_t parsed = 0;
+    for (;;) {
+        Failure error;
+        std::size_t taken = parser.put(buffer_.data(), error);
+        buffer_.consume(taken);
+        parsed += taken;
+        if (error && error != http::error::need_more)
+            co_return statusOf(error);
+        if (parsed + (parser.is_header_done() ? 0 : buffer_.size()) >= limits_.requestHeaderBytes)
+            co_return 431;
+        if (parser.is_header_done())
+            co_return headerRead;
+        auto [problem, size] = co_await socket_.async_read_some(
+            buffer_.prepare(std::min(readBytes, limits_.requestHeaderBytes - buffer_.size())), answered);
+        buffer_.commit(size);
+        if (problem)
+            co_return clientLeft;
+    }
+}
+
+net::awaitable<bool> Connection::answerNext() {
+    RequestParser parser;
+    int status = co_await readHeader(parser);
+    if (status == clientLeft)
+        co_return false;
+    if (status != headerRead) {
         HttpRequest unknown;
-        if (status != 0)
-            co_await sendAndLog(unknown, answerUnreadable(status), false);
+        co_await sendAndLog(unknown, answerUnreadable(status), false);
         co_return false;
     }
-    HttpRequest request = requestOf(parser);
+    HttpRequest request = requestOf(parser.get());
     HttpResponse response = loop_.state().site->answer(request, std::time(nullptr));
     bool keepsAlive = wantsKeepAlive(request) && !response.closes && !loop_.isStopping();
     bool isSent = co_await sendAndLog(request, std::move(response), keepsAlive);

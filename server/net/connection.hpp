@@ -7,6 +7,8 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
 #include <chrono>
 
 namespace stipple::server {
@@ -25,8 +27,9 @@ class Connection {
     bool isLate(Clock::time_point now) const { return now >= deadline_; }
 
   private:
-    struct ReadOutcome;
+    using RequestParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
     boost::asio::awaitable<bool> waitForRequest();
+    boost::asio::awaitable<int> readHeader(RequestParser& parser);
     boost::asio::awaitable<bool> answerNext(); // true: the connection goes on
     boost::asio::awaitable<bool> sendAndLog(const HttpRequest& request, HttpResponse response,
                                             bool keepsAlive);

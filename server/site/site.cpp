@@ -115,8 +115,7 @@ HttpResponse Site::answerFile(const HttpRequest& request, std::string_view name,
 }
 
 HttpResponse answerUnreadable(int status) {
-    const char* detail = status == 408   ? "the request did not arrive in time"
-                         : status == 431 ? "the header is too large"
+    const char* detail = status == 431   ? "the header is too large"
                          : status == 505 ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
                                          : "this is not an HTTP request";
     HttpResponse response = problemResponse(status, detail);

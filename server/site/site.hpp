@@ -38,8 +38,7 @@ class Site {
     Page page_;
 };
 
-// The response to bytes that are no request, or to a request that came too slowly; closes the connection.
-// `status`: 400, 408, 431 or 505.
+// The response to bytes that are no request; closes the connection. `status`: 400, 431 or 505.
 HttpResponse answerUnreadable(int status);
 
 } // namespace stipple::server
