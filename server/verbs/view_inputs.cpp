@@ -66,7 +66,6 @@ Result<std::string> prepareInput(const std::string& input, const std::atomic<boo
     if (isUpToDate(output, input))
         return output;
 
-#ifdef HAVE_stipple_converter
     cli::Progress progress;
     ConvertOptions options;
     options.stop = &stop;
@@ -81,10 +80,6 @@ Result<std::string> prepareInput(const std::string& input, const std::atomic<boo
     for (const std::string& warning : converted->warnings)
         std::fprintf(stderr, "stipple view: %s\n", warning.c_str());
     return output;
-#else
-    (void)stop;
-    return Error{ErrorCode::unsupported, "this build has no converter", input, ""};
-#endif
 }
 
 } // namespace stipple::server
