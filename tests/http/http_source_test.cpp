@@ -1,0 +1,262 @@
+// The native HTTP byte source against the real server, and against servers that misbehave.
+#include "client/headless/http_source.hpp"
+
+#include "client/headless/http_url.hpp"
+#include "tests/http/support/raw_client.hpp"
+#include "tests/http/support/test_server.hpp"
+
+#include <arpa/inet.h>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+using namespace stipple;
+using namespace stipple::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::unique_ptr<ByteSource> open(const std::string& url, HttpSourceOptions options = {}) {
+    auto source = openHttpSource(url, options);
+    REQUIRE(source.ok());
+    return std::move(*source);
+}
+
+// Sends fixed bytes to whoever connects, once, after the request came; then closes or keeps silent.
+class FixedServer {
+  public:
+    explicit FixedServer(std::string answer, bool closes = true)
+        : answer_(std::move(answer)), closes_(closes) {
+        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof address;
+        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
+        ::listen(listener_, 8);
+        ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
+        url_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/x";
+        thread_ = std::thread([this] { run(); });
+    }
+    ~FixedServer() {
+        ends_ = true;
+        ::shutdown(listener_, SHUT_RDWR);
+        thread_.join();
+        ::close(listener_);
+    }
+    const std::string& url() const { return url_; }
+
+  private:
+    void run() {
+        while (!ends_) {
+            int client = ::accept(listener_, nullptr, nullptr);
+            if (client < 0)
+                return;
+            char request[4096];
+            (void)!::recv(client, request, sizeof request, 0);
+            (void)!::send(client, answer_.data(), answer_.size(), MSG_NOSIGNAL);
+            while (!closes_ && !ends_)
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            ::close(client);
+        }
+    }
+    std::string answer_, url_;
+    bool closes_;
+    int listener_ = -1;
+    std::atomic<bool> ends_{false};
+    std::thread thread_;
+};
+
+ErrorCode errorFrom(const std::string& answer) {
+    FixedServer server(answer);
+    auto result = readNow(*open(server.url()), {0, 10});
+    REQUIRE_FALSE(result.ok());
+    return result.error().code;
+}
+
+} // namespace
+
+TEST_CASE("reads give exactly the bytes of the file, in any order, over few connections") {
+    TestServer server;
+    auto source = open(server.url("/pattern.bin"));
+    CHECK(source->sizeBytes() == 0);
+    int answered = 0, wrong = 0;
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        std::uint64_t offset = i * 7919 % 2'900'000, size = 1 + i * 331 % 90'000;
+        source->read({offset, size}, [&, offset, size](Result<Bytes> result) {
+            ++answered;
+            bool fine = result.ok() && result->size() == size;
+            for (std::uint64_t b = 0; fine && b < size; b += 97)
+                fine = static_cast<char>((*result)[b]) == patternByte(offset + b);
+            wrong += !fine;
+        });
+    }
+    while (answered < 300)
+        source->pump(std::chrono::milliseconds(100));
+    CHECK(wrong == 0);
+    CHECK(source->sizeBytes() == TestFolder::patternBytes);
+    CHECK(server.server().openConnections() <= 6);
+    CHECK(server.logOf(300).size() == 300);
+}
+
+TEST_CASE("a read is cut at the end of the file, and one behind it is truncated") {
+    TestServer server;
+    auto source = open(server.url("/pattern.bin"));
+    auto tail = readNow(*source, {TestFolder::patternBytes - 5, 100});
+    REQUIRE(tail.ok());
+    CHECK(tail->size() == 5);
+    auto behind = readNow(*source, {TestFolder::patternBytes, 1});
+    REQUIRE_FALSE(behind.ok());
+    CHECK(behind.error().code == ErrorCode::truncated);
+    CHECK(readNow(*source, {0, 0}).ok());
+    CHECK(readNow(*source, {~0ull, 5}).error().code == ErrorCode::invalidArgument);
+}
+
+TEST_CASE("a replaced file answers changed") {
+    TestServer server;
+    auto source = open(server.url("/clouds/town.stipple"));
+    REQUIRE(readNow(*source, {0, 64}).ok());
+    std::string fresh = server.folder().cloud().string() + ".new";
+    writeCloud(fresh, 20'001, 3);
+    fs::rename(fresh, server.folder().cloud());
+    auto result = readNow(*source, {64, 64});
+    REQUIRE_FALSE(result.ok());
+    CHECK(result.error().code == ErrorCode::changed);
+}
+
+TEST_CASE("a cancelled read is answered as such at the next pump, once") {
+    TestServer server;
+    auto source = open(server.url("/huge.bin"));
+    int answers = 0;
+    ErrorCode code{};
+    auto id = source->read({0, 1ull << 30}, [&](Result<Bytes> result) {
+        ++answers;
+        code = result.error().code;
+    });
+    source->pump(std::chrono::milliseconds(5));
+    source->cancel(id);
+    source->cancel(id);
+    source->pump(std::chrono::milliseconds(0));
+    CHECK(answers == 1);
+    CHECK(code == ErrorCode::cancelled);
+    auto next = readNow(*source, {0, 10}); // goes on working
+    CHECK(next.ok());
+    auto log = server.logOf(2);
+    REQUIRE(log.size() == 2);
+    CHECK(log[0].bodyBytes + log[1].bodyBytes < 1ull << 29); // the rest was not fetched
+    CHECK(answers == 1);
+}
+
+TEST_CASE("destroying a source answers what is open with cancelled, also from inside a completion") {
+    TestServer server;
+    int cancelled = 0, fine = 0;
+    auto count = [&](Result<Bytes> result) { (result.ok() ? fine : cancelled) += 1; };
+    auto source = open(server.url("/pattern.bin"));
+    for (int i = 0; i < 20; ++i)
+        source->read({0, 100}, count);
+    source.reset();
+    CHECK(cancelled == 20);
+
+    source = open(server.url("/pattern.bin"));
+    source->read({0, 10}, [&](Result<Bytes> result) {
+        count(std::move(result));
+        source.reset();
+    });
+    for (int i = 0; i < 10; ++i)
+        source->read({0, 1'000'000}, count);
+    ByteSource* pumped = source.get();
+    while (source)
+        pumped->pump(std::chrono::milliseconds(100));
+    CHECK(fine + cancelled == 31);
+    CHECK(fine >= 1);
+}
+
+TEST_CASE("a server that is gone is an error, not a wait") {
+    auto server = std::make_unique<TestServer>();
+    auto source = open(server->url("/pattern.bin"));
+    REQUIRE(readNow(*source, {0, 10}).ok());
+    server->end();
+    auto result = readNow(*source, {10, 10});
+    REQUIRE_FALSE(result.ok());
+    CHECK(result.error().code == ErrorCode::networkFailed);
+    CHECK_FALSE(result.error().advice.empty());
+}
+
+TEST_CASE("a connection that the server closed in between is opened again") {
+    auto limits = TestServer::quickLimits();
+    limits.idle = std::chrono::milliseconds(50);
+    TestServer server(limits);
+    auto source = open(server.url("/pattern.bin"));
+    REQUIRE(readNow(*source, {0, 10}).ok());
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    CHECK(readNow(*source, {10, 10}).ok());
+}
+
+TEST_CASE("a silent server is given up after the time limit") {
+    FixedServer silent("", false);
+    HttpSourceOptions options;
+    options.headerTimeout = std::chrono::milliseconds(200);
+    CHECK(readNow(*open(silent.url(), options), {0, 10}).error().code == ErrorCode::networkFailed);
+    FixedServer stuck(
+        "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes 0-9/10\r\nContent-Length: 10\r\n\r\n01", false);
+    options.noProgressTimeout = std::chrono::milliseconds(200);
+    CHECK(readNow(*open(stuck.url(), options), {0, 10}).error().code == ErrorCode::networkFailed);
+}
+
+TEST_CASE("answers that are not what was asked for are refused") {
+    const std::string part = "HTTP/1.1 206 Partial Content\r\n";
+    CHECK(errorFrom("HTTP/1.1 200 OK\r\nContent-Length: 5000000000\r\n\r\nxxxx") == ErrorCode::unsupported);
+    CHECK(errorFrom(part + "Content-Length: 10\r\n\r\n0123456789") == ErrorCode::networkFailed);
+    CHECK(errorFrom(part + "Content-Range: bytes 1-10/20\r\nContent-Length: 10\r\n\r\n0123456789") ==
+          ErrorCode::networkFailed);
+    CHECK(errorFrom(part + "Content-Range: bytes 0-9/20\r\nContent-Length: 11\r\n\r\n01234567890") ==
+          ErrorCode::networkFailed);
+    CHECK(errorFrom(part + "Content-Range: bytes 0-9/20\r\nContent-Length: 10\r\n\r\n01234") ==
+          ErrorCode::networkFailed);
+    CHECK(errorFrom(part + "Content-Range: bytes 0-9/20\r\nTransfer-Encoding: chunked\r\n\r\nff\r\n" +
+                    std::string(255, 'x') + "\r\n0\r\n\r\n") == ErrorCode::networkFailed);
+    CHECK(
+        errorFrom(part +
+                  "Content-Range: bytes 0-9/20\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n0\r\n\r\n") ==
+        ErrorCode::networkFailed);
+    CHECK(errorFrom(part +
+                    "Content-Range: bytes 0-9/20\r\nContent-Encoding: gzip\r\nContent-Length: 10\r\n\r\n"
+                    "0123456789") == ErrorCode::networkFailed);
+    CHECK(errorFrom("HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n") == ErrorCode::notFound);
+    CHECK(errorFrom("HTTP/1.1 302 Found\r\nLocation: /y\r\nContent-Length: 0\r\n\r\n") ==
+          ErrorCode::networkFailed);
+    CHECK(errorFrom("SSH-2.0-OpenSSH_9.2\r\n\r\n") == ErrorCode::networkFailed);
+    CHECK(errorFrom("") == ErrorCode::networkFailed);
+    std::string endless = "HTTP/1.1 206 Partial Content\r\n";
+    for (int i = 0; i < 20'000; ++i)
+        endless += "X: 1\r\n";
+    CHECK(errorFrom(endless + "Content-Range: bytes 0-9/20\r\nContent-Length: 10\r\n\r\n0123456789") ==
+          ErrorCode::networkFailed);
+}
+
+TEST_CASE("a whole file that is no longer than the range is taken from a plain server") {
+    FixedServer plain("HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nabcd");
+    auto result = readNow(*open(plain.url()), {0, 65536});
+    REQUIRE(result.ok());
+    CHECK(std::string(result->begin(), result->end()) == "abcd");
+}
+
+TEST_CASE("addresses are taken apart, and what is none or not http is refused") {
+    auto parts = parseHttpUrl("HTTP://[::1]:8017?x=1#part");
+    REQUIRE(parts.ok());
+    CHECK(parts->host == "::1");
+    CHECK(parts->port == "8017");
+    CHECK(parts->authority == "[::1]:8017");
+    CHECK(parts->target == "/?x=1");
+    CHECK(parseHttpUrl("http://host/a/b")->port == "80");
+    CHECK(openHttpSource("https://host/x").error().code == ErrorCode::unsupported);
+    CHECK(openSource("ftp://host/x").error().code == ErrorCode::unsupported);
+    for (const char* url : {"http://", "http:///x", "http://host:0/", "http://host:65536/", "http://host:x/",
+                            "http://user@host/", "http://[::1/x", "http://host/a b", "http://host/a\r\nX: y"})
+        CHECK(openHttpSource(url).error().code == ErrorCode::invalidArgument);
+    CHECK(openSource("/nonexistent/file").error().code == ErrorCode::notFound);
+}
