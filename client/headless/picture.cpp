@@ -2,6 +2,7 @@
 
 #include "client/core/json.hpp"
 #include "client/headless/egl_context.hpp"
+#include "client/headless/thread_decoder.hpp"
 #include "client/render/gles_renderer.hpp"
 #include "client/render/raster_setup.hpp"
 #include "client/render/software_renderer.hpp"
@@ -115,7 +116,7 @@ Status checkRequest(const PictureRequest& request) {
 Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request) {
     STIPPLE_CHECK(checkRequest(request));
     auto start = Clock::now();
-    auto decoder = makeInlineDecoder();
+    auto decoder = makeThreadDecoder(request.threads);
     auto session = ViewSession::create(*decoder, request.limits);
     session->setViewport(request.width, request.height);
     session->setStyle(request.style);

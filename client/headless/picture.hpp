@@ -28,7 +28,7 @@ struct PictureRequest {
     Style style;
     SessionLimits limits;
     Backend backend = Backend::software;
-    int threads = 0;                           // of the software backend; 0: one per core
+    int threads = 0;                           // of decoding and the software backend; 0: one per core
     std::chrono::milliseconds timeout{60'000}; // for opening and loading together
 };
 
