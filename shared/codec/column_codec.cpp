@@ -106,7 +106,7 @@ void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
         writePlanes<T>(planes, values);
         offer(planes);
     }
-    if (sizeof(T) == 8) { // times: several returns share one, and all come from a few short spans
+    if (sizeof(T) >= 4) { // times: several returns share one, and all come from a few short spans
         ByteWriter ranked;
         ranked.write(Method::ranked);
         writeRanked(ranked, values);

@@ -16,22 +16,26 @@ Error corrupt(std::string what) {
     return Error{ErrorCode::corrupt, std::move(what), "hierarchy chunk", {}};
 }
 
-// A size as the difference to what the node before suggests: a block's bytes grow with the points it holds,
-// and those of a stratum with those of the stratum before.
+// A size as the difference to what the nodes before suggest: a block's bytes grow with the points it holds,
+// and those of a stratum with those of the stratum before. The last few nodes count most.
 class SizeModel {
   public:
     // `reference` is what the size is in proportion to; < 2^32, as the result.
     std::int64_t predict(std::uint64_t reference) const {
-        std::uint64_t scaled = lastReference_ == 0 ? reference : lastSize_ * reference / lastReference_;
+        std::uint64_t scaled = references_ == 0 ? reference : sizes_ * reference / references_;
         return static_cast<std::int64_t>(std::min<std::uint64_t>(scaled, UINT32_MAX));
     }
     void learn(std::uint64_t reference, std::uint64_t size) {
-        lastReference_ = reference;
-        lastSize_ = size;
+        references_ += reference - references_ / 4;
+        sizes_ += size - sizes_ / 4;
+        while (sizes_ >= std::uint64_t{1} << 32) { // keeps the product above within 64 bits
+            sizes_ /= 2;
+            references_ /= 2;
+        }
     }
 
   private:
-    std::uint64_t lastReference_ = 0, lastSize_ = 0;
+    std::uint64_t references_ = 0, sizes_ = 0;
 };
 
 // Numbers as a stream of low bytes, which hardly compress, and one of what is above them, which does.
