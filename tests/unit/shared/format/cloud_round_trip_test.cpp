@@ -1,51 +1,111 @@
-#include "tests/unit/shared/format/sample_cloud.hpp"
-
-#include "shared/io/file_source.hpp"
-
-#include <filesystem>
+#include "shared/io/memory_source.hpp"
+#include "tests/unit/shared/format/sample_file.hpp"
 
 using namespace stipple;
 using namespace stipple::test;
 
-namespace {
-
-std::string temporaryPath(const std::string& name) {
-    return (std::filesystem::temp_directory_path() / ("stipple-" + name + ".stipple")).string();
-}
-
-} // namespace
-
 TEST_CASE("the points of a written cloud are read back") {
-    CloudMetadata metadata = sampleMetadata();
-    std::string path = temporaryPath("round-trip");
-    PointHash hash;
-    {
-        auto writer = need(CloudWriter::create(path));
-        std::uint32_t seed = 1;
-        for (NodeKey key : {NodeKey{}, NodeKey{1, 0, 1, 0}, NodeKey{3, 5, 2, 7}, NodeKey{1, 1, 1, 1}}) {
-            PointBatch points = randomPoints(metadata, key, 1000 * seed, seed);
-            ++seed;
-            hash.add(metadata.schema, points);
-            metadata.pointCount += points.size();
-            need(writer->add(need(encodeNode(metadata, key, points))));
-        }
-        need(writer->finish(metadata));
-    }
-    auto source = need(openFileSource(path));
-    auto reader = need(CloudReader::open(*source));
+    SampleFile file = sampleFile(1000);
+    MemorySource source(file.bytes);
+    auto reader = need(CloudReader::open(source));
     PointHash read;
-    std::uint64_t points = 0, nodes = 0;
+    std::vector<std::string> nodes;
     need(reader->visitNodes([&](const NodeEntry& entry) -> Status {
         STIPPLE_TRY(batch, reader->readNode(entry));
         read.add(reader->metadata().schema, batch);
-        points += batch.size();
-        ++nodes;
+        nodes.push_back(entry.key.text());
         return {};
     }));
-    CHECK(points == metadata.pointCount);
-    CHECK(nodes == 6);
-    CHECK(read == hash);
-    CHECK(!std::filesystem::exists(path + ".blocks"));
-    CHECK(!std::filesystem::exists(path + ".part"));
+    CHECK(read == file.hash);
+    CHECK(nodes ==
+          std::vector<std::string>{"0-0-0-0", "1-0-1-0", "1-1-0-1", "1-1-1-1", "2-2-1-3", "3-5-2-7"});
+    CHECK(file.written.nodes == 6);
+    CHECK(file.written.fileBytes == file.bytes.size());
+    CHECK(file.written.pictureBytes + file.written.attributeBytes + file.written.hierarchyBytes +
+              file.written.metadataBytes + fileHeaderBytes ==
+          file.bytes.size());
+}
+
+TEST_CASE("the same nodes added in another order give the same file") {
+    SampleFile file = sampleFile(300, 1);
+    CHECK(sampleFile(300, 2).bytes == file.bytes);
+    CHECK(sampleFile(300, 3).bytes == file.bytes);
+}
+
+TEST_CASE("the first 64 KiB hold the first stratum of the root node") {
+    CloudMetadata metadata = sampleMetadata();
+    metadata.crs.wkt = std::string(5000, 'x');
+    metadata.rootCube.bits = 12; // about the bits a point of a scan
+    PointBatch points = randomPoints(metadata, {}, 40000, 1);
+    for (auto name : {attribute_names::red, attribute_names::green, attribute_names::blue})
+        for (std::size_t i = 0; i < points.size(); ++i)
+            points.setValue<std::uint16_t>(metadata.schema.find(name), i, static_cast<std::uint16_t>(i % 32));
+    metadata.pointCount = points.size();
+    std::string path = temporaryPath("first-request");
+    auto writer = need(CloudWriter::create(path));
+    need(writer->add(need(encodeNode(metadata, {}, points))));
+    need(writer->finish(metadata));
+    auto source = need(openFileSource(path));
+    Bytes first = need(readNow(*source, {0, firstRequestBytes}));
+    auto part = [&](ByteRange range) {
+        return ByteSpan(first).subspan(static_cast<std::size_t>(range.offset),
+                                       static_cast<std::size_t>(range.size));
+    };
+    FileHeader header = need(parseFileHeader(first));
+    CloudMetadata read = need(parseMetadata(part(header.metadata)));
+    auto nodes = need(parseHierarchyChunk(read, header.fileBytes, part(header.rootChunk)));
+    ByteRange stratum = nodes[0].strataRange(1);
+    REQUIRE(stratum.end() <= firstRequestBytes);
+    CHECK(need(decodePicture(read, nodes[0], 1, part(stratum))).size() == 5000);
     std::filesystem::remove(path);
+}
+
+TEST_CASE("an empty cloud is a file with an empty root") {
+    CloudMetadata metadata = sampleMetadata();
+    std::string path = temporaryPath("empty");
+    need(need(CloudWriter::create(path))->finish(metadata));
+    auto source = need(openFileSource(path));
+    auto reader = need(CloudReader::open(*source));
+    int nodes = 0;
+    need(reader->visitNodes([&](const NodeEntry& entry) -> Status {
+        ++nodes;
+        CHECK(need(reader->readNode(entry)).size() == 0);
+        return {};
+    }));
+    CHECK(nodes == 1);
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("without finish nothing is left behind") {
+    std::string path = temporaryPath("unfinished"),
+                folder = std::filesystem::path(path).parent_path().string();
+    {
+        auto writer = need(CloudWriter::create(path));
+        CloudMetadata metadata = sampleMetadata();
+        need(writer->add(need(encodeNode(metadata, {}, randomPoints(metadata, {}, 100, 1)))));
+        CHECK(writer->add(need(encodeNode(metadata, {}, randomPoints(metadata, {}, 100, 1)))).error().code ==
+              ErrorCode::invalidArgument);       // each key once
+        auto refused = writer->finish(metadata); // the count of points is missing
+        CHECK(refused.error().code == ErrorCode::invalidArgument);
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        CHECK(entry.path().string().find("stipple-test-unfinished") == std::string::npos);
+}
+
+TEST_CASE("a path that cannot be written is an error") {
+    auto writer = CloudWriter::create("/nowhere/at/all.stipple");
+    REQUIRE(!writer.ok());
+    CHECK(writer.error().sentence().find("/nowhere/at/all.stipple") == 0);
+}
+
+TEST_CASE("a visitor stops the visit") {
+    SampleFile file = sampleFile(10);
+    MemorySource source(file.bytes);
+    auto reader = need(CloudReader::open(source));
+    int nodes = 0;
+    Status status = reader->visitNodes([&](const NodeEntry&) -> Status {
+        return ++nodes == 2 ? Status(Error{ErrorCode::cancelled, "enough", {}, {}}) : Status{};
+    });
+    CHECK(status.error().code == ErrorCode::cancelled);
+    CHECK(nodes == 2);
 }
