@@ -105,7 +105,7 @@ TEST_CASE("a reader that runs out gives zeros and stays failed") {
     CHECK(reader.readBytes(1).empty());
     CHECK(reader.remaining() == 0);
     ByteReader other(bytes);
-    other.skip(std::size_t{1} << 62);
+    other.skip(~std::size_t{0});
     CHECK(!other.ok());
 }
 

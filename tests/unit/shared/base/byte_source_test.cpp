@@ -100,7 +100,7 @@ TEST_CASE("readNow pumps a source until it answers") {
         int pump(std::chrono::milliseconds) override {
             if (++pumps != 3)
                 return 0;
-            done_(Bytes(range_.size, 'x'));
+            done_(Bytes(static_cast<std::size_t>(range_.size), 'x'));
             return 1;
         }
         std::uint64_t sizeBytes() const override { return 0; }
