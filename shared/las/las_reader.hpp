@@ -28,7 +28,9 @@ class Reader {
     // What in the file contradicts itself, one sentence each, with positions.
     virtual const std::vector<std::string>& warnings() const = 0;
 
-    // Points [first, first + count) into `batch` (resized). Positions are the file's integers (Header::grid).
+    // Points [first, first + count) into `batch` (resized; fewer where the file ends before). Positions are
+    // the file's integers (Header::grid). Errors: outOfRange if first > pointCount(), unsupported for LAZ
+    // (whose header, records and schema can be read all the same), those of the source.
     virtual Status read(std::uint64_t first, std::uint64_t count, PointBatch& batch) = 0;
 };
 
