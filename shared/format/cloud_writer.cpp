@@ -4,30 +4,30 @@
 #include "shared/format/block_frame.hpp"
 #include "shared/format/file_parts.hpp"
 #include "shared/format/hierarchy_layout.hpp"
+#include "shared/io/output_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <unistd.h>
 #include <unordered_set>
 
 namespace stipple {
 
 namespace {
 
-// A file being written or read back; errors say its name and the system's reason.
-class TemporaryFile {
+// Where blocks wait until their order is known; removed with the object. Errors say its name and the system's
+// reason.
+class BlockStore {
   public:
-    explicit TemporaryFile(std::string path)
-        : path_(std::move(path)), file_(std::fopen(path_.c_str(), "w+b")) {}
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        if (file_ != nullptr)
-            std::fclose(file_);
-        if (!path_.empty())
-            std::remove(path_.c_str());
+    explicit BlockStore(std::string path) : path_(std::move(path)), file_(std::fopen(path_.c_str(), "w+b")) {}
+    BlockStore(const BlockStore&) = delete;
+    BlockStore& operator=(const BlockStore&) = delete;
+    ~BlockStore() {
+        if (file_ == nullptr)
+            return;
+        std::fclose(file_);
+        std::remove(path_.c_str());
     }
 
     Status opened() const {
@@ -36,24 +36,15 @@ class TemporaryFile {
         return {};
     }
     Status write(ByteSpan bytes) {
-        if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
+        if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size())
             return failure("cannot be written");
         size_ += bytes.size();
         return {};
     }
     Status read(std::uint64_t offset, std::span<std::uint8_t> to) {
-        if (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0 ||
-            std::fread(to.data(), 1, to.size(), file_) != to.size())
+        if (!to.empty() && (fseeko(file_, static_cast<off_t>(offset), SEEK_SET) != 0 ||
+                            std::fread(to.data(), 1, to.size(), file_) != to.size()))
             return failure("cannot be read back");
-        return {};
-    }
-    // Puts the bytes on the disk and gives the file its final name.
-    Status publish(const std::string& name) {
-        if (std::fflush(file_) != 0 || fsync(fileno(file_)) != 0)
-            return failure("cannot be written");
-        if (std::rename(path_.c_str(), name.c_str()) != 0)
-            return failure(cat("cannot be renamed to ", name));
-        path_.clear();
         return {};
     }
     std::uint64_t size() const { return size_; }
@@ -61,7 +52,7 @@ class TemporaryFile {
   private:
     Error failure(const std::string& what) const {
         std::string reason = errno != 0 ? std::strerror(errno) : "unknown reason";
-        return Error{ErrorCode::ioFailed, cat("the file ", what, ": ", reason), path_,
+        return Error{ErrorCode::writeFailed, cat("the file ", what, ": ", reason), path_,
                      errno == ENOSPC ? "free some space" : ""};
     }
 
@@ -82,7 +73,7 @@ struct StoredNode {
 class Writer final : public CloudWriter {
   public:
     explicit Writer(const std::string& path)
-        : path_(path), blocks_(std::make_unique<TemporaryFile>(path + ".blocks")) {}
+        : path_(path), blocks_(std::make_unique<BlockStore>(path + ".blocks")) {}
 
     Status opened() const { return blocks_->opened(); }
 
@@ -136,16 +127,15 @@ class Writer final : public CloudWriter {
         header.rootChunk = {header.metadata.end(), 0};
         std::vector<Bytes> chunkBlocks = placeChunks(header, plans, chunks);
 
-        TemporaryFile file(path_ + ".part");
-        STIPPLE_CHECK(file.opened());
-        STIPPLE_CHECK(file.write(writeFileHeader(header)));
-        STIPPLE_CHECK(file.write(metadataBlock));
-        STIPPLE_CHECK(file.write(chunkBlocks[0]));
+        STIPPLE_TRY(file, OutputFile::create(path_));
+        STIPPLE_CHECK(file->append(writeFileHeader(header)));
+        STIPPLE_CHECK(file->append(metadataBlock));
+        STIPPLE_CHECK(file->append(chunkBlocks[0]));
         WrittenCloud written;
-        STIPPLE_CHECK(copyNodes(file, octree, plans, written));
+        STIPPLE_CHECK(copyNodes(*file, octree, plans, written));
         for (std::size_t c = 1; c < chunkBlocks.size(); ++c)
-            STIPPLE_CHECK(file.write(chunkBlocks[c]));
-        STIPPLE_CHECK(file.publish(path_));
+            STIPPLE_CHECK(file->append(chunkBlocks[c]));
+        STIPPLE_CHECK(file->commit());
         blocks_.reset();
 
         written.fileBytes = header.fileBytes;
@@ -236,7 +226,7 @@ class Writer final : public CloudWriter {
         return blocks;
     }
 
-    Status copyNodes(TemporaryFile& file, const std::vector<OctreeNode>& octree,
+    Status copyNodes(OutputFile& file, const std::vector<OctreeNode>& octree,
                      const std::vector<ChunkPlan>& plans, WrittenCloud& written) {
         Bytes buffer;
         for (const ChunkPlan& plan : plans)
@@ -246,7 +236,7 @@ class Writer final : public CloudWriter {
                 const StoredNode& stored = stored_[static_cast<std::size_t>(octree[i].source)];
                 buffer.resize(stored.size);
                 STIPPLE_CHECK(blocks_->read(stored.offset, buffer));
-                STIPPLE_CHECK(file.write(buffer));
+                STIPPLE_CHECK(file.append(buffer));
                 std::uint64_t attributeBytes = 0;
                 for (std::uint32_t bytes : stored.attributeBytes)
                     attributeBytes += bytes;
@@ -257,7 +247,7 @@ class Writer final : public CloudWriter {
     }
 
     std::string path_;
-    std::unique_ptr<TemporaryFile> blocks_;
+    std::unique_ptr<BlockStore> blocks_;
     std::unordered_set<NodeKey, NodeKeyHash> added_;
     std::vector<NodeKey> keys_;
     std::vector<StoredNode> stored_;
