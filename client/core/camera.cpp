@@ -1,5 +1,7 @@
 #include "client/core/camera.hpp"
 
+#include "client/core/view_fit.hpp"
+
 #include <algorithm>
 #include <array>
 #include <numbers>
@@ -11,7 +13,8 @@ namespace {
 constexpr double radiansPerDegree = std::numbers::pi / 180;
 // Nearest the direction may come to the up axis while orbiting; there the azimuth is still well defined.
 constexpr double poleGapRadians = 0.01 * radiansPerDegree;
-constexpr double fitMargin = 1.05;
+// How much of the picture's width or height a named view fills.
+constexpr double filledPart = 0.96;
 // Logarithmic depth keeps 24 bits for log2(far / near): at this ratio a step is 2^-19 of the distance or
 // less, and a content of the size of a planet still shows points a centimetre away.
 constexpr double smallestNearToFar = 0x1p-31;
@@ -155,28 +158,26 @@ Camera namedCamera(NamedView name, const BoxD& content, double aspect, Projectio
     Vec3d centre = content.min + (content.max - content.min) * 0.5;
     double tanHalfFov = std::tan(camera.fovYDegrees * radiansPerDegree / 2);
 
-    // Each corner must satisfy |y| <= tan × depth and |x| <= aspect × tan × depth.
-    double distance = 0, halfHeight = 0, radius = 0;
-    for (Vec3d corner : cornersOf(content)) {
+    double halfHeight = 0, radius = 0;
+    std::array<Vec3d, 8> corners = cornersOf(content); // in the camera's axes, from the centre
+    for (Vec3d& corner : corners) {
         Vec3d relative = corner - centre;
-        double needed = std::max(std::abs(dot(relative, axes.up)), //
-                                 std::abs(dot(relative, axes.right)) / aspect) *
-                        fitMargin;
-        halfHeight = std::max(halfHeight, needed);
-        distance = std::max(distance, needed / tanHalfFov - dot(relative, forward));
+        corner = {dot(relative, axes.right), dot(relative, axes.up), dot(relative, forward)};
+        halfHeight = std::max({halfHeight, std::abs(corner.y), std::abs(corner.x) / aspect});
         radius = std::max(radius, length(relative));
     }
-    if (radius == 0) { // a single point: any distance shows it
-        distance = 1;
-        halfHeight = tanHalfFov;
-    }
     // Content that is flat along the view's height and width still needs a height.
-    halfHeight = std::max(halfHeight, radius * 1e-6);
+    halfHeight = radius > 0 ? std::max(halfHeight / filledPart, radius * 1e-6) : tanHalfFov;
     camera.orthoHeight = 2 * halfHeight;
+
+    Vec3d eye{0, 0, -1}; // a single point: any distance shows it
     if (projection == Projection::orthographic)
-        distance = halfHeight / tanHalfFov + radius;
-    camera.target = centre;
-    camera.position = centre - forward * std::max(distance, radius * 1e-3);
+        eye.z = -(halfHeight / tanHalfFov + radius);
+    else if (radius > 0)
+        eye = fittedEye(corners, tanHalfFov * aspect * filledPart, tanHalfFov * filledPart, radius * 1e-3);
+    // The target stays at the centre's depth, so that turning goes around the content.
+    camera.target = centre + axes.right * eye.x + axes.up * eye.y;
+    camera.position = camera.target + forward * eye.z;
     return camera;
 }
 

@@ -36,8 +36,9 @@ Vec3d projectToPixels(const ViewTransform& view, int width, int height, Vec3d wo
 double unitsPerPixel(const Camera& camera, int height);
 
 enum class NamedView { top, front, iso };
-// A camera that shows all of `content` from that side with a margin of a twentieth: `top` looks down with +y
-// up, `front` looks along +y, `iso` along (1, 1, -1). `aspect` = width / height.
+// A camera that shows all of `content` from that side: `top` looks down with +y up, `front` looks along +y,
+// `iso` along (1, 1, -1). The corners of `content` fill the picture's width or height but for a margin of a
+// fiftieth at each side, and are centred in both. `aspect` = width / height.
 Camera namedCamera(NamedView view, const BoxD& content, double aspect,
                    Projection projection = Projection::perspective);
 

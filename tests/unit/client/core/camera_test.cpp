@@ -129,7 +129,7 @@ TEST_CASE("moving the eye of an orthographic view back changes no pixel") {
                                projectToPixels(large, width, height, corner)) < 1e-8);
 }
 
-TEST_CASE("a named view shows all of its content and fills the picture up to its margin") {
+TEST_CASE("a named view shows all of its content and fills the picture, centred, up to its margin") {
     auto name = GENERATE(NamedView::top, NamedView::front, NamedView::iso);
     auto projection = GENERATE(Projection::perspective, Projection::orthographic);
     auto content =
@@ -139,15 +139,25 @@ TEST_CASE("a named view shows all of its content and fills the picture up to its
     Camera camera = namedCamera(name, content, static_cast<double>(w) / height, projection);
     REQUIRE(isUsable(camera));
     ViewTransform view = viewTransform(camera, w, height, content);
-    double largest = 0;
+    double left = HUGE_VAL, right = -HUGE_VAL, top = HUGE_VAL, bottom = -HUGE_VAL;
     for (Vec3d corner : cornersOf(content)) {
         Vec3d pixel = projectToPixels(view, w, height, corner);
         CHECK(pixel.z > view.near);
         CHECK(pixel.z < view.far);
-        largest = std::max({largest, std::abs(2 * pixel.x / w - 1), std::abs(2 * pixel.y / height - 1)});
+        left = std::min(left, pixel.x);
+        right = std::max(right, pixel.x);
+        top = std::min(top, pixel.y);
+        bottom = std::max(bottom, pixel.y);
     }
-    CHECK(largest <= 1 / 1.05 + 1e-6);
-    CHECK(largest > 1 / 1.05 - 1e-6);
+    CHECK(left >= 0);
+    CHECK(right <= w);
+    CHECK(top >= 0);
+    CHECK(bottom <= height);
+    CHECK(std::max((right - left) / w, (bottom - top) / height) == Approx(0.96).epsilon(1e-6));
+    CHECK(std::abs((left + right) / 2 - w / 2.0) < 0.01 * std::max(right - left, 1.0));
+    CHECK(std::abs((top + bottom) / 2 - height / 2.0) < 0.01 * std::max(bottom - top, 1.0));
+    // Turning goes around the content: the target is at its depth.
+    CHECK(dot(camera.target - (content.min + content.max) * 0.5, view.forward) == Approx(0).margin(1e-6));
 }
 
 TEST_CASE("a named view of a point or of nothing is usable") {
