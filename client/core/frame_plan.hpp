@@ -14,7 +14,7 @@
 // p - cell is exact in 32-bit integers. p - cell and -fraction never differ in sign outside the node, so
 // nothing cancels: the error is relative to the distance from the camera, under 0.001 pixel in perspective
 // for any grid and zoom. In orthographic views that distance is the depth of the content: at most 2^-23
-// of it, which is 0.01 pixel where the content is 80,000 pixels deep. coarseShift is 0.
+// of it, which is 0.01 pixel where the content is 80,000 pixels deep.
 //
 // Depth: a point at view distance d (along `forward`) in [near, far] has depth log2(d / near) /
 // log2(far / near) in [0, 1]. Points nearer than near or beyond far are not drawn.
@@ -54,8 +54,7 @@ struct DrawNode {
     std::uint32_t pointCount = 0;             // draw this prefix; <= node->pointCount
     std::array<std::int32_t, 3> cameraCell{}; // see above; >= 0
     std::array<float, 3> cameraFraction{};    // see above
-    Vec3d scale;                              // world units per integer (after coarseShift)
-    int coarseShift = 0;                      // low bits of p that are dropped; 0 nearly always
+    Vec3d scale;                              // world units per integer
     double cameraZ = 0; // world z of the camera, for elevation: z = cameraZ + relative.z
     double spacing = 0; // minimum distance of the node's points, world units
 };

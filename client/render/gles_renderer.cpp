@@ -21,7 +21,7 @@ constexpr float levelsInv = 1.0f / 255.0f;
 // points.vert.glsl + points.frag.glsl with one set of defines, and where its uniforms are.
 struct PointProgram {
     Program program;
-    GLint cell, fraction, rowX, rowY, rowD, positionShift, coarseShift, colourSource, ramp;
+    GLint cell, fraction, rowX, rowY, rowD, positionShift, colourSource, ramp;
     GLint centre, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
         sizeRange64, gradient;
 
@@ -38,7 +38,6 @@ struct PointProgram {
         made.rowY = at("uRowY");
         made.rowD = at("uRowD");
         made.positionShift = at("uPositionShift");
-        made.coarseShift = at("uCoarseShift");
         made.colourSource = at("uColourSource");
         made.ramp = at("uRamp");
         made.centre = at("uCentre");
@@ -76,7 +75,6 @@ struct PointProgram {
         glUniform3fv(rowY, 1, node.rowY.data());
         glUniform3fv(rowD, 1, node.rowD.data());
         glUniform1i(positionShift, node.positionShift);
-        glUniform1i(coarseShift, node.coarseShift);
         glUniform1i(colourSource, static_cast<GLint>(node.source));
         glUniform2f(ramp, node.rampScale, node.rampOffset);
     }

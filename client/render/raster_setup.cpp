@@ -43,7 +43,7 @@ ColourSource sourceOf(ColourMode mode, const ResidentNode& node) {
 
 // The middle of a node along the view direction, world units.
 double centreDistance(const ViewTransform& view, const DrawNode& node) {
-    double half = std::ldexp(0.5, node.node->nodeBits - node.coarseShift);
+    double half = std::ldexp(0.5, node.node->nodeBits);
     Vec3d relative;
     for (int axis = 0; axis < 3; ++axis)
         relative[axis] =
@@ -91,7 +91,6 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
     raster.fraction = node.cameraFraction;
     raster.cell = node.cameraCell;
     raster.positionShift = node.node->positionShift;
-    raster.coarseShift = node.coarseShift;
 
     raster.source = sourceOf(style.colourMode, *node.node);
     Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;

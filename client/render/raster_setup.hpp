@@ -72,7 +72,7 @@ struct RasterFrame {
 struct RasterNode {
     std::array<float, 3> rowX{}, rowY{}, rowD{}, fraction{};
     std::array<std::int32_t, 3> cell{};
-    int positionShift = 0, coarseShift = 0;
+    int positionShift = 0;
     ColourSource source = ColourSource::words;
     // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
     // r.z for elevation.

@@ -44,7 +44,7 @@ STIPPLE_INLINE float clampFloat(float value, float low, float high) {
 }
 
 // One loop without branches over the block, for the vectorizer.
-template <bool Perspective, bool Shifted, bool LowWords, Sizing Size>
+template <bool Perspective, bool LowWords, Sizing Size>
 STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, Words words,
                               std::size_t count, Block& block) {
     const float ax = node.rowX[0], bx = node.rowX[1], cx = node.rowX[2];
@@ -59,7 +59,7 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const auto width = static_cast<float>(frame.width), height = static_cast<float>(frame.height);
     const std::uint32_t nearBits = frame.nearBits;
     const int depthShift = frame.depthShift;
-    const int positionShift = node.positionShift, coarseShift = node.coarseShift;
+    const int positionShift = node.positionShift;
     const std::uint32_t lowMask = (1u << positionShift) - 1;
     const auto columns = static_cast<std::uint32_t>(frame.width);
     const auto lastRow = static_cast<std::uint32_t>(frame.height - 1);
@@ -78,11 +78,6 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             px = (px << positionShift) | (low & lowMask);
             py = (py << positionShift) | ((low >> 10) & lowMask);
             pz = (pz << positionShift) | ((low >> 20) & lowMask);
-        }
-        if constexpr (Shifted) {
-            px >>= coarseShift;
-            py >>= coarseShift;
-            pz >>= coarseShift;
         }
         const float rx = static_cast<float>(static_cast<std::int32_t>(px - cellX)) - fx;
         const float ry = static_cast<float>(static_cast<std::int32_t>(py - cellY)) - fy;
@@ -122,40 +117,35 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
 
 using Transform = void (*)(const RasterFrame&, const RasterNode&, Words, std::size_t, Block&);
 
-template <bool P, bool S, bool L, Sizing Z>
+template <bool P, bool L, Sizing Z>
 void transformBaseline(const RasterFrame& frame, const RasterNode& node, Words words, std::size_t count,
                        Block& block) {
-    transform<P, S, L, Z>(frame, node, words, count, block);
+    transform<P, L, Z>(frame, node, words, count, block);
 }
 
 #ifdef STIPPLE_WIDE_VECTORS
-template <bool P, bool S, bool L, Sizing Z>
+template <bool P, bool L, Sizing Z>
 __attribute__((target("avx2"))) void transformAvx2(const RasterFrame& frame, const RasterNode& node,
                                                    Words words, std::size_t count, Block& block) {
-    transform<P, S, L, Z>(frame, node, words, count, block);
+    transform<P, L, Z>(frame, node, words, count, block);
 }
 #endif
 
-template <bool P, bool S, bool L, Sizing Z>
+template <bool P, bool L, Sizing Z>
 Transform chosenTransform() {
 #ifdef STIPPLE_WIDE_VECTORS
     if (__builtin_cpu_supports("avx2"))
-        return transformAvx2<P, S, L, Z>;
+        return transformAvx2<P, L, Z>;
 #endif
-    return transformBaseline<P, S, L, Z>;
+    return transformBaseline<P, L, Z>;
 }
 
 template <Sizing Z>
 Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
     bool low = node.positionShift > 0;
-    bool shifted = node.coarseShift > 0;
     if (frame.perspective)
-        return low       ? chosenTransform<true, true, true, Z>()
-               : shifted ? chosenTransform<true, true, false, Z>()
-                         : chosenTransform<true, false, false, Z>();
-    return low       ? chosenTransform<false, true, true, Z>()
-           : shifted ? chosenTransform<false, true, false, Z>()
-                     : chosenTransform<false, false, false, Z>();
+        return low ? chosenTransform<true, true, Z>() : chosenTransform<true, false, Z>();
+    return low ? chosenTransform<false, true, Z>() : chosenTransform<false, false, Z>();
 }
 
 // The cell becomes the smaller of itself and `candidate`.

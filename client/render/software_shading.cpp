@@ -17,7 +17,6 @@ float heightOf(const RasterNode& raster, const ResidentNode& node, std::size_t p
         std::uint32_t low = node.positionLowWords[point] >> 20;
         z = (z << raster.positionShift) | (low & ((1u << raster.positionShift) - 1));
     }
-    z >>= raster.coarseShift;
     auto relative = static_cast<std::int32_t>(z - static_cast<std::uint32_t>(raster.cell[2]));
     return static_cast<float>(relative) - raster.fraction[2];
 }

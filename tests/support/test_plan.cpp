@@ -50,8 +50,7 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
         resident->key = {8, index++, 0, 0};
         DrawNode draw;
         draw.pointCount = resident->pointCount;
-        draw.coarseShift = node.coarseShift;
-        draw.scale = node.scale * std::ldexp(1.0, node.coarseShift);
+        draw.scale = node.scale;
         for (int axis = 0; axis < 3; ++axis) {
             double steps = (view.position[axis] - node.corner[axis]) / draw.scale[axis];
             auto i = static_cast<std::size_t>(axis);

@@ -21,7 +21,6 @@ struct TestNode {
     int nodeBits = 16;
     Vec3d corner{0, 0, 0};
     Vec3d scale{0.01, 0.01, 0.01};
-    int coarseShift = 0;
     bool hasColour = true, hasIntensity = true;
 
     Vec3d world(const TestPoint& p) const {

@@ -18,7 +18,6 @@ uniform vec3 uRowX;
 uniform vec3 uRowY;
 uniform vec3 uRowD;
 uniform int uPositionShift;
-uniform int uCoarseShift;
 uniform int uColourSource; // ColourSource
 uniform vec2 uRamp;        // scale, offset
 
@@ -63,7 +62,6 @@ void main() {
     p = (p << uPositionShift) |
         (uvec3(aPositionLow, aPositionLow >> 10, aPositionLow >> 20) & uvec3(lowMask));
 #endif
-    p >>= uCoarseShift;
     vec3 r = vec3(ivec3(p) - uCell) - uFraction;
 
     float d = along(uRowD, r);
