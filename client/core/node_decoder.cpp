@@ -44,12 +44,17 @@ std::vector<float> toFloats(AttributeType type, ByteSpan column, std::size_t cou
     return {};
 }
 
+// For what is found here; the decoders of blocks name the node themselves.
+Error errorAt(const DecodeJob& job, ErrorCode code, std::string what) {
+    return {code, std::move(what), "node " + job.entry.key.text(), ""};
+}
+
 // The first `count` intensities of the node.
 Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t count) {
     const CloudMetadata& metadata = *job.metadata;
     int block = intensityBlock(metadata);
     if (block < 0)
-        return Error{ErrorCode::invalidArgument, "the cloud has no block of intensities", "", ""};
+        return errorAt(job, ErrorCode::invalidArgument, "the cloud has no block of intensities");
     auto index = static_cast<std::size_t>(block);
     STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.intensity));
     int wanted = metadata.schema.find(attribute_names::intensity);
@@ -58,7 +63,7 @@ Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t cou
                                            attributes.begin());
     const Attribute& attribute = metadata.schema.attributes[static_cast<std::size_t>(wanted)];
     if (columns.size() <= column || columns[column].size() < count * attribute.size())
-        return Error{ErrorCode::corrupt, "the block of intensities is too short", "", ""};
+        return errorAt(job, ErrorCode::corrupt, "the block of intensities is too short");
     return toFloats(attribute.type, columns[column], count);
 }
 
@@ -66,8 +71,7 @@ Result<ResidentNode> decodePicturePart(const DecodeJob& job) {
     const CloudMetadata& metadata = *job.metadata;
     int nodeBits = metadata.rootCube.nodeBits(job.entry.key.level);
     if (nodeBits < 0 || nodeBits > maxNodeBits)
-        return Error{ErrorCode::corrupt, cat("a node 2^", nodeBits, " steps wide can hold no points"), "",
-                     ""};
+        return errorAt(job, ErrorCode::corrupt, cat("a node 2^", nodeBits, " steps wide can hold no points"));
     STIPPLE_TRY(picture, decodePicture(metadata, job.entry, job.strata, job.picture));
     return packNode(job.entry.key, nodeBits, job.entry.pointCount, picture, metadata.pictureColour,
                     metadata.colourIs8Bit);
@@ -81,17 +85,6 @@ ResidentNode withoutPicture(const DecodeJob& job) {
     return node;
 }
 
-Result<ResidentNode> decodeUnplaced(const DecodeJob& job) {
-    if (!job.metadata || job.strata < 0 || job.strata > strataCount)
-        return Error{ErrorCode::invalidArgument, "a decoding job without metadata or strata", "", ""};
-    Result<ResidentNode> node = job.strata == 0 ? withoutPicture(job) : decodePicturePart(job);
-    if (!node.ok() || !job.wantsIntensity || job.intensity.empty())
-        return node;
-    STIPPLE_TRY(intensity, decodeIntensity(job, node->pointCount));
-    node->intensity = std::move(intensity);
-    return node;
-}
-
 class InlineDecoder final : public NodeDecoder {
   public:
     void decode(DecodeJob job, Completion done) override { done(decodeNode(job)); }
@@ -102,9 +95,13 @@ class InlineDecoder final : public NodeDecoder {
 } // namespace
 
 Result<ResidentNode> decodeNode(const DecodeJob& job) {
-    Result<ResidentNode> node = decodeUnplaced(job);
-    if (!node.ok())
-        return node.error().at("node " + job.entry.key.text());
+    if (!job.metadata || job.strata < 0 || job.strata > strataCount)
+        return errorAt(job, ErrorCode::invalidArgument, "a decoding job without metadata or strata");
+    Result<ResidentNode> node = job.strata == 0 ? withoutPicture(job) : decodePicturePart(job);
+    if (!node.ok() || !job.wantsIntensity || job.intensity.empty())
+        return node;
+    STIPPLE_TRY(intensity, decodeIntensity(job, node->pointCount));
+    node->intensity = std::move(intensity);
     return node;
 }
 

@@ -99,7 +99,7 @@ class Verification {
         const CloudMetadata& metadata = worker.reader->metadata();
         auto read = worker.reader->readNode(entry);
         if (!read) {
-            fault(read.error().at(cat("node ", entry.key.text())).sentence());
+            fault(read.error().sentence());
             return {};
         }
         const PointBatch& batch = *read;

@@ -32,8 +32,9 @@ Result<CloudMetadata> parseMetadata(ByteSpan block); // exactly FileHeader::meta
 Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata, std::uint64_t fileBytes,
                                                    ByteSpan block);
 
-// Decodes the first `strata` strata (1..4) from their bytes (exactly entry.strataRange(strata)).
-// Memory: bounded by entry.pointCount, which is itself bounded by the bytes that came.
+// Decodes the first `strata` strata (1..4) from their bytes (exactly entry.strataRange(strata)). Errors of
+// this and of decodeAttributes name the node, the block and its byte. Memory: bounded by entry.pointCount,
+// which is itself bounded by the bytes that came.
 Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
                                   ByteSpan bytes);
 // Decodes further block `block` for all points of the node (exactly entry.attributeRange(block)):
@@ -51,7 +52,8 @@ class CloudReader {
     virtual const CloudMetadata& metadata() const = 0;
     // Every node, chunk by chunk; stops at the first error, the visitor's own included.
     virtual Status visitNodes(const std::function<Status(const NodeEntry&)>& visit) = 0;
-    // All points of a node, grid integers and every attribute of the schema.
+    // All points of a node, grid integers and every attribute of the schema. Errors name the file and, where
+    // the bytes could be read, the node.
     virtual Result<PointBatch> readNode(const NodeEntry& entry) = 0;
 };
 

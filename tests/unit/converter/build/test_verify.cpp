@@ -160,6 +160,10 @@ TEST_CASE_METHOD(Fixture, "every flipped byte of a node is found", "[verify]") {
         auto report = verifyFile(altered, {}, 1, nullptr, noProgress);
         INFO("byte " << at);
         CHECK((!report.ok() || !report->passed()));
+        for (const std::string& fault : report.ok() ? report->faults : std::vector<std::string>{}) {
+            INFO(fault);
+            CHECK(fault.find("node ") == fault.rfind("node ")); // placed once
+        }
     }
 }
 

@@ -1,0 +1,82 @@
+#include "client/core/node_decoder.hpp"
+
+#include "tests/support/small_cloud.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace stipple;
+using namespace stipple::test;
+
+namespace {
+
+Bytes bytesOf(const SmallCloud& cloud, ByteRange range) {
+    auto from = cloud.file.begin() + static_cast<std::ptrdiff_t>(range.offset);
+    return Bytes(from, from + static_cast<std::ptrdiff_t>(range.size));
+}
+
+// Everything of the second node.
+DecodeJob wholeJob(const SmallCloud& cloud) {
+    DecodeJob job;
+    job.metadata = std::make_shared<const CloudMetadata>(cloud.metadata);
+    job.entry = cloud.nodes.at(1);
+    job.picture = bytesOf(cloud, job.entry.strataRange(strataCount));
+    job.wantsIntensity = true;
+    auto block = static_cast<std::size_t>(intensityBlock(cloud.metadata));
+    job.intensity = bytesOf(cloud, job.entry.attributeRange(block));
+    return job;
+}
+
+// That the error begins with the node's name and says it once.
+void checkPlacedOnce(const DecodeJob& job) {
+    Result<ResidentNode> node = decodeNode(job);
+    REQUIRE_FALSE(node.ok());
+    std::string sentence = node.error().sentence(), name = "node " + job.entry.key.text();
+    INFO(sentence);
+    CHECK(sentence.find(name) == 0);
+    CHECK(sentence.rfind(name) == 0);
+}
+
+} // namespace
+
+TEST_CASE("an error of a node names the node once") {
+    DecodeJob whole = wholeJob(makeSmallCloud());
+    REQUIRE(decodeNode(whole).ok());
+
+    DecodeJob altered = whole;
+    altered.picture[altered.picture.size() / 2] ^= 1;
+    checkPlacedOnce(altered);
+
+    DecodeJob cut = whole;
+    cut.picture.resize(cut.picture.size() - 1);
+    checkPlacedOnce(cut);
+
+    DecodeJob alteredIntensity = whole;
+    alteredIntensity.intensity.back() ^= 1;
+    checkPlacedOnce(alteredIntensity);
+
+    DecodeJob tooDeep = whole;
+    tooDeep.entry.key.level = 30;
+    checkPlacedOnce(tooDeep);
+
+    DecodeJob noStrata = whole;
+    noStrata.strata = strataCount + 1;
+    checkPlacedOnce(noStrata);
+
+    DecodeJob noMetadata = whole;
+    noMetadata.metadata.reset();
+    checkPlacedOnce(noMetadata);
+}
+
+TEST_CASE("intensities that the cloud does not have are an error of the node") {
+    SmallCloudOptions options;
+    options.withIntensity = false;
+    SmallCloud cloud = makeSmallCloud(options);
+    REQUIRE(intensityBlock(cloud.metadata) < 0);
+    DecodeJob job;
+    job.metadata = std::make_shared<const CloudMetadata>(cloud.metadata);
+    job.entry = cloud.nodes.at(1);
+    job.strata = 0;
+    job.wantsIntensity = true;
+    job.intensity = Bytes(10);
+    checkPlacedOnce(job);
+}
