@@ -135,7 +135,9 @@ Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureReq
     STIPPLE_TRY(camera, cameraOf(request, session->contentBounds()));
     session->setCamera(camera);
     session->setLimits(request.limits);
-    STIPPLE_CHECK(loader.until([&] { return session->settled(); }));
+    bool firstIsEnough = request.until == Until::first;
+    STIPPLE_CHECK(loader.until(
+        [&] { return session->settled() || (firstIsEnough && session->plan().counters.pointsDrawn > 0); }));
     picture.loadSeconds = secondsSince(start) - picture.openSeconds;
 
     FramePlan plan = session->plan();

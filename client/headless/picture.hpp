@@ -1,5 +1,5 @@
 // A cloud to a picture, start to end: opens it, chooses the camera, loads until everything the view wants
-// has arrived, draws once.
+// (or the first of it) has arrived, draws once.
 #pragma once
 
 #include "client/core/camera.hpp"
@@ -18,6 +18,8 @@
 namespace stipple::headless {
 
 enum class Backend { software, gles };
+// When to draw: once everything the view wants has arrived, or as soon as there is anything to see.
+enum class Until { complete, first };
 
 struct PictureRequest {
     int width = 1280, height = 720; // pixels, 1..16384 each
@@ -28,6 +30,7 @@ struct PictureRequest {
     Style style;
     SessionLimits limits;
     Backend backend = Backend::software;
+    Until until = Until::complete;
     int threads = 0;                           // of decoding and the software backend; 0: one per core
     std::chrono::milliseconds timeout{60'000}; // for opening and loading together
 };

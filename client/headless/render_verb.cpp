@@ -26,6 +26,7 @@ struct Options {
     std::string style = "{}";
     std::string projection;
     std::string backend = "software";
+    std::string until = "complete";
     double timeoutSeconds = 60;
     bool json = false;
     PictureRequest request;
@@ -50,6 +51,7 @@ Result<PictureRequest> requestOf(const Options& options) {
         request.projection =
             options.projection == "orthographic" ? Projection::orthographic : Projection::perspective;
     request.backend = options.backend == "gles" ? Backend::gles : Backend::software;
+    request.until = options.until == "first" ? Until::first : Until::complete;
     request.timeout = std::chrono::milliseconds(static_cast<std::int64_t>(options.timeoutSeconds * 1000));
     STIPPLE_CHECK(checkRequest(request));
     return request;
@@ -112,6 +114,10 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
                      "How points look, as JSON: {\"colourMode\": \"elevation\", \"sizePixels\": 3, …}");
     verb->add_option("--projection", options->projection, "perspective or orthographic")
         ->check(CLI::IsMember({"perspective", "orthographic"}));
+    verb->add_option("--until", options->until,
+                     "Draw when the view is complete, or as soon as there is anything to see (first)")
+        ->check(CLI::IsMember({"complete", "first"}))
+        ->capture_default_str();
     verb->add_option("--threads", options->request.threads, "Of the software backend; 0: one per core")
         ->check(CLI::Range(0, 256))
         ->capture_default_str();

@@ -100,6 +100,19 @@ TEST_CASE("the budget bounds the points, and a wider one shows more", "[render]"
     CHECK(all == 120'000);
 }
 
+TEST_CASE("the first picture takes one request of 64 KiB", "[render]") {
+    headless::PictureRequest request;
+    request.until = headless::Until::first;
+    auto source = openFileSource(cloudFile());
+    REQUIRE(source.ok());
+    auto picture = headless::drawPicture(*std::move(source), request);
+    REQUIRE(picture.ok());
+    CHECK(picture->frame.pointsDrawn > 0);
+    CHECK_FALSE(picture->frame.complete);
+    // What else was asked for by then is still on its way.
+    CHECK(picture->session.nodesDecoded == 1);
+}
+
 TEST_CASE("wrong options are told apart before anything is read", "[render]") {
     Scratch scratch;
     std::string output = scratch.file("a.png");
