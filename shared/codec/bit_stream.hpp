@@ -3,6 +3,7 @@
 
 #include "shared/base/bytes.hpp"
 
+#include <algorithm>
 #include <bit>
 
 namespace stipple {
@@ -40,18 +41,33 @@ class BitWriter {
     int used_ = 0;
 };
 
-// Reads at any bit, from a copy that is padded so that no read leaves it. Reads past the end of the
-// stream give zeros for as long as the caller keeps `at() <= sizeBits() + 64`; it checks
-// `ok()` at least that often.
+// Bytes with zeros behind them, so that a BitReader may read whole words up to their end.
+class PaddedBytes {
+  public:
+    static constexpr std::size_t padding = 24;
+
+    explicit PaddedBytes(ByteSpan bytes) : bytes_(bytes.size() + padding), size_(bytes.size()) {
+        std::copy(bytes.begin(), bytes.end(), bytes_.begin());
+    }
+    const std::uint8_t* data() const { return bytes_.data(); }
+    std::size_t size() const { return size_; }
+
+  private:
+    Bytes bytes_;
+    std::size_t size_;
+};
+
+// Reads numbers one after the other. Past the end of the stream there are zeros for one read of any width;
+// so callers check `ok()` at least before each read. Small and without ownership: loops work on
+// a copy, which stays in registers.
 class BitReader {
   public:
-    explicit BitReader(ByteSpan stream) : bytes_(stream.begin(), stream.end()) {
-        bytes_.resize(stream.size() + padding);
-    }
+    explicit BitReader(const PaddedBytes& stream)
+        : from_(stream.data()), sizeBits_(8 * std::uint64_t{stream.size()}) {}
 
     // `count` is 0..63.
     std::uint64_t read(int count) {
-        const std::uint8_t* from = bytes_.data() + (at_ >> 3);
+        const std::uint8_t* from = from_ + (at_ >> 3);
         std::uint64_t low = loadLe<std::uint64_t>(from) >> (at_ & 7);
         // Eight bytes hold at least 57 bits from any start; the ninth has the rest.
         if (count > 57) [[unlikely]]
@@ -59,14 +75,11 @@ class BitReader {
         at_ += static_cast<std::uint64_t>(count);
         return low & ((std::uint64_t{1} << count) - 1);
     }
-    bool ok() const { return at_ <= sizeBits(); }
-    std::uint64_t at() const { return at_; }
-    std::uint64_t sizeBits() const { return 8 * (bytes_.size() - padding); }
+    bool ok() const { return at_ <= sizeBits_; }
 
   private:
-    static constexpr std::size_t padding = 24;
-    Bytes bytes_;
-    std::uint64_t at_ = 0;
+    const std::uint8_t* from_;
+    std::uint64_t at_ = 0, sizeBits_;
 };
 
 } // namespace stipple

@@ -44,17 +44,6 @@ void writePlane(ByteWriter& to, std::span<const T> values) {
     }
 }
 
-template <class T>
-Status readPlane(ByteReader& from, std::span<T> values) {
-    Bytes part(values.size());
-    for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
-        STIPPLE_CHECK(readFullSection(from, part));
-        for (std::size_t j = 0; j < part.size(); ++j)
-            values[j] = static_cast<T>(byte == 0 ? part[j] : values[j] | part[j] << (8 * byte));
-    }
-    return {};
-}
-
 // The stratum's values of one channel, and the earlier strata's, in Morton order.
 template <class T>
 std::vector<T> every(std::span<const std::uint16_t> values, std::size_t channels, std::size_t channel,
@@ -108,10 +97,40 @@ void encodeAs(ByteWriter& to, std::span<const std::uint16_t> values, std::size_t
     to.writeBytes(channels == 1 && plain.size() < predicted.size() ? plain.bytes() : predicted.bytes());
 }
 
+// Three colours, or one intensity, side by side in a word: arithmetic on all of them at once, each modulo the
+// width of its lane.
+template <class Word>
+struct Lanes {
+    static constexpr int bits = sizeof(Word) == 4 ? 8 : 16;
+    static constexpr Word one =
+        sizeof(Word) == 4 ? static_cast<Word>(0x010101u) : static_cast<Word>(0x000100010001ull);
+    static constexpr Word top = static_cast<Word>(one << (bits - 1));
+    static constexpr Word mask = static_cast<Word>((Word{1} << bits) - 1);
+
+    static Word add(Word a, Word b) { return ((a & ~top) + (b & ~top)) ^ ((a ^ b) & top); }
+    // (a + b + 1) / 2
+    static Word mean(Word a, Word b) { return (a | b) - (((a ^ b) & ~one) >> 1); }
+};
+
+// The residuals of every channel; lanes that a channel count leaves free are zero.
+template <class Word>
+Status readResiduals(ByteReader& from, std::size_t channels, std::vector<Word>& to) {
+    constexpr int bits = Lanes<Word>::bits;
+    Bytes plane(to.size());
+    for (std::size_t c = 0; c < channels; ++c)
+        for (int byte = 0; byte < bits; byte += 8) {
+            STIPPLE_CHECK(readFullSection(from, plane));
+            int shift = byte + bits * static_cast<int>(channels == 1 ? 0 : channelOrder[c]);
+            for (std::size_t j = 0; j < to.size(); ++j)
+                to[j] |= Word{plane[j]} << shift;
+        }
+    return {};
+}
+
 // Puts the new points between the known ones.
-template <class T>
-void merge(std::vector<T>& known, std::span<const T> fresh) {
-    std::vector<T> merged(known.size() + fresh.size());
+template <class Word>
+void merge(std::vector<Word>& known, std::span<const Word> fresh) {
+    std::vector<Word> merged(known.size() + fresh.size());
     for (std::size_t j = 0; j < fresh.size(); ++j) {
         merged[2 * j] = known[j];
         merged[2 * j + 1] = fresh[j];
@@ -161,68 +180,66 @@ Status ColourDecoder::decode(int stratum, ByteReader& from, NeighbourChoices cho
             return Error{ErrorCode::corrupt, cat("unknown colour width ", width), {}, {}};
         width_ = static_cast<ColourWidth>(width);
     }
-    return width_ == ColourWidth::wide ? decodeAs(words_, stratum, from, choices)
-                                       : decodeAs(bytes_, stratum, from, choices);
+    return width_ == ColourWidth::wide ? decodeAs(wide_, stratum, from, choices)
+                                       : decodeAs(narrow_, stratum, from, choices);
 }
 
-template <class T>
-Status ColourDecoder::decodeAs(std::array<std::vector<T>, 3>& known, int stratum, ByteReader& from,
+template <class Word>
+Status ColourDecoder::decodeAs(std::vector<Word>& known, int stratum, ByteReader& from,
                                NeighbourChoices choices) {
-    std::size_t count = stratumPoints(pointCount_, stratum);
+    using Lane = Lanes<Word>;
     auto coding = from.read<Coding>();
     if (!from.ok() || coding > Coding::plain || (coding == Coding::plain && channels_ != 1))
         return Error{ErrorCode::corrupt, "unknown way to store colours", {}, {}};
-    std::array<std::vector<T>, 3> fresh;
-    std::vector<T> green(count), predicted(count);
-    for (std::size_t c = 0; c < channels_; ++c) {
-        std::size_t channel = channels_ == 1 ? 0 : channelOrder[c];
-        std::vector<T>& own = fresh[channel];
-        own.resize(count);
-        STIPPLE_CHECK(readPlane<T>(from, own));
-        if (coding == Coding::plain)
-            break;
-        if (c == 0)
-            green = own;
-        else
-            for (std::size_t j = 0; j < count; ++j)
-                own[j] = static_cast<T>(own[j] + green[j]);
-        if (stratum == 0) {
-            T before = 0;
-            for (T& value : own)
-                before = value = static_cast<T>(value + before);
-        } else {
-            predictBetween<T>(known[channel], choices, predicted);
-            for (std::size_t j = 0; j < count; ++j)
-                own[j] = static_cast<T>(own[j] + predicted[j]);
-        }
+    std::vector<Word> fresh(stratumPoints(pointCount_, stratum));
+    STIPPLE_CHECK(readResiduals(from, channels_, fresh));
+    if (coding == Coding::predicted && channels_ == 3) {
+        constexpr Word exceptGreen = static_cast<Word>(~(Lane::mask << Lane::bits));
+        for (Word& word : fresh) // green's residual is part of those of red and blue
+            word = Lane::add(word, ((word >> Lane::bits) & Lane::mask) * (Lane::one & exceptGreen));
     }
-    append<T>(fresh);
-    for (std::size_t c = 0; c < channels_; ++c)
-        if (stratum == 0)
-            known[c] = std::move(fresh[c]);
-        else
-            merge<T>(known[c], fresh[c]);
+    if (coding == Coding::predicted && stratum == 0) {
+        Word before = 0;
+        for (Word& word : fresh)
+            before = word = Lane::add(word, before);
+    } else if (coding == Coding::predicted) {
+        std::size_t pairs = std::min(fresh.size(), known.size() - 1);
+        for (std::size_t j = 0; j < pairs; ++j) {
+            Word a = known[j], b = known[j + 1];
+            Word first = choices[j] == NeighbourChoice::upper ? b : a;
+            Word second = choices[j] == NeighbourChoice::lower ? a : b;
+            fresh[j] = Lane::add(fresh[j], Lane::mean(first, second));
+        }
+        if (pairs < fresh.size()) // the last point may have no upper neighbour
+            fresh[pairs] = Lane::add(fresh[pairs], known[pairs]);
+    }
+    append<Word>(fresh);
+    if (stratum == 0)
+        known = std::move(fresh);
+    else
+        merge<Word>(known, fresh);
     return {};
 }
 
 // Appends a stratum's values in progressive order.
-template <class T>
-void ColourDecoder::append(const std::array<std::vector<T>, 3>& fresh) {
-    std::uint32_t unit = unitOf(width_);
-    std::size_t count = fresh[0].size(), start = values_.size();
-    values_.resize(start + count * channels_);
+template <class Word>
+void ColourDecoder::append(std::span<const Word> fresh) {
+    using Lane = Lanes<Word>;
+    Word unit = unitOf(width_);
+    std::size_t start = values_.size();
+    values_.resize(start + fresh.size() * channels_);
     std::uint16_t* to = values_.data() + start;
-    const T *red = fresh[0].data(), *green = fresh[1].data(), *blue = fresh[2].data();
-    std::vector<std::uint32_t> order = bitReversedOrder(static_cast<std::uint32_t>(count));
+    std::vector<std::uint32_t> order = bitReversedOrder(static_cast<std::uint32_t>(fresh.size()));
     if (channels_ == 1) {
         for (std::uint32_t j : order)
-            *to++ = static_cast<std::uint16_t>(red[j] * unit);
+            *to++ = static_cast<std::uint16_t>(fresh[j] * unit);
         return;
     }
     for (std::uint32_t j : order) {
-        to[0] = static_cast<std::uint16_t>(red[j] * unit);
-        to[1] = static_cast<std::uint16_t>(green[j] * unit);
-        to[2] = static_cast<std::uint16_t>(blue[j] * unit);
+        Word word = fresh[j];
+        to[0] = static_cast<std::uint16_t>((word & Lane::mask) * unit);
+        to[1] = static_cast<std::uint16_t>(((word >> Lane::bits) & Lane::mask) * unit);
+        to[2] = static_cast<std::uint16_t>((word >> (2 * Lane::bits)) * unit);
         to += 3;
     }
 }

@@ -8,7 +8,6 @@
 #include "shared/codec/neighbour_choice.hpp"
 #include "shared/format/node_entry.hpp"
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,8 +32,8 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, int cha
 // Decodes strata one after the other.
 class ColourDecoder {
   public:
-    // For the first `strata` strata. Takes 8 bytes of memory a channel and point; the caller has bounded
-    // their number.
+    // For the first `strata` strata. Takes up to 24 bytes of memory a point; the caller has bounded their
+    // number.
     ColourDecoder(std::uint32_t pointCount, int channels, int strata);
 
     // Stratum `stratum`; in ascending order, and only those that have points. Errors: truncated, corrupt.
@@ -43,18 +42,18 @@ class ColourDecoder {
     std::vector<std::uint16_t> takeValues() { return std::move(values_); }
 
   private:
-    template <class T>
-    Status decodeAs(std::array<std::vector<T>, 3>& known, int stratum, ByteReader& from,
-                    NeighbourChoices choices);
-    template <class T>
-    void append(const std::array<std::vector<T>, 3>& fresh);
+    template <class Word>
+    Status decodeAs(std::vector<Word>& known, int stratum, ByteReader& from, NeighbourChoices choices);
+    template <class Word>
+    void append(std::span<const Word> fresh);
 
     std::uint32_t pointCount_;
     std::size_t channels_;
     ColourWidth width_ = ColourWidth::wide;
-    // Decoded values of each channel in Morton order, without those of later strata.
-    std::array<std::vector<std::uint8_t>, 3> bytes_;
-    std::array<std::vector<std::uint16_t>, 3> words_;
+    // Decoded colours in Morton order, without those of later strata; all channels of a point in one word,
+    // red or intensity in its lowest lane: lanes of 8 bits, or of 16 if the width is wide.
+    std::vector<std::uint32_t> narrow_;
+    std::vector<std::uint64_t> wide_;
     std::vector<std::uint16_t> values_;
 };
 

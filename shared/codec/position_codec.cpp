@@ -89,7 +89,8 @@ Status PositionDecoder::decode(int stratum, ByteReader& from) {
         from.readBytes(static_cast<std::size_t>(std::min<std::uint64_t>(readVarint(from), SIZE_MAX)));
     if (!from.ok())
         return Error{ErrorCode::truncated, "the bits of the positions end early", {}, {}};
-    BitReader bits(stream);
+    PaddedBytes padded(stream);
+    BitReader bits(padded);
     if (stratum == 0 && tokenCount != tokens.size())
         return Error{ErrorCode::corrupt, "stratum 0 has no token for some points", {}, {}};
     STIPPLE_CHECK(stratum == 0 ? decodeFirst(bits, tokens)
@@ -102,54 +103,65 @@ Status PositionDecoder::decode(int stratum, ByteReader& from) {
     return {};
 }
 
-Status PositionDecoder::decodeFirst(BitReader& bits, std::span<const std::uint8_t> tokens) {
+Status PositionDecoder::decodeFirst(BitReader& stream, std::span<const std::uint8_t> tokens) {
     choices_.clear();
+    BitReader bits = stream;
     std::uint64_t key = 0;
     std::uint64_t lastKey = (std::uint64_t{1} << layout_.keyBits) - 1;
-    std::size_t step = 8 / spacing_, at = 0;
+    std::size_t step = 8 / spacing_;
+    std::uint64_t* to = keys_.data();
     for (std::uint8_t token : tokens) {
         if (token > layout_.keyBits || !bits.ok())
             return Error{ErrorCode::corrupt, "a key difference is wider than the key", {}, {}};
         key += readBelowLeadingOne(bits, token);
         if (key > lastKey)
             return Error{ErrorCode::corrupt, "a key is wider than the node", {}, {}};
-        keys_[at] = key;
-        at += step;
+        *to = key;
+        to += step;
     }
+    stream = bits;
     return {};
 }
 
-Status PositionDecoder::decodeBetween(int stratum, BitReader& bits, std::span<const std::uint8_t> tokens,
+Status PositionDecoder::decodeBetween(int stratum, BitReader& stream, std::span<const std::uint8_t> tokens,
                                       std::size_t tokenCount) {
-    std::uint64_t lastKey = (std::uint64_t{1} << layout_.keyBits) - 1;
     std::size_t half = stratumFirst(stratum) / spacing_;
     choices_.resize(tokens.size());
-    // There is a token for each point at most, so `next` stays inside; whether it used up just the
-    // tokens that came is checked at the end.
-    std::size_t next = 0;
-    std::size_t i = half;
-    for (std::size_t j = 0; j < tokens.size(); ++j, i += 2 * half) {
-        bool hasUpper = i + half < keys_.size();
-        std::uint64_t low = keys_[i - half], high = hasUpper ? keys_[i + half] : lastKey;
+    BitReader bits = stream;
+    // There is a token for each point at most, so `token` stays inside; whether just the tokens that came
+    // were used is checked at the end.
+    const std::uint8_t* token = tokens.data();
+    NeighbourChoice* choice = choices_.data();
+    std::uint64_t* keys = keys_.data();
+    // Points that have both neighbours; one more may have none above.
+    std::size_t between = (keys_.size() - 1) / (2 * half);
+    bool fits = true;
+    auto decodeOne = [&](std::uint64_t low, std::uint64_t high) {
         std::uint64_t span = high - low;
-        if (span == 0) {
-            keys_[i] = low;
-            choices_[j] = hasUpper ? NeighbourChoice::mean : NeighbourChoice::lower;
-            continue;
-        }
-        std::uint8_t token = tokens[next++];
-        int length = bitLength(span) - token / 2;
-        if (length < 0 || !bits.ok())
-            return Error{ErrorCode::corrupt, "a key leaves the bracket of its neighbours", {}, {}};
-        std::uint64_t distance = readBelowLeadingOne(bits, length);
-        if (distance > span)
-            return Error{ErrorCode::corrupt, "a key leaves the bracket of its neighbours", {}, {}};
-        std::uint64_t below = token % 2 != 0 ? span - distance : distance;
-        keys_[i] = low + below;
-        choices_[j] = hasUpper ? chooseNeighbour(below, span - below) : NeighbourChoice::lower;
+        *choice = NeighbourChoice::mean;
+        if (span == 0)
+            return low;
+        int length = bitLength(span) - *token / 2;
+        bool nearHigh = *token++ % 2 != 0;
+        fits = length >= 0 && bits.ok();
+        std::uint64_t distance = fits ? readBelowLeadingOne(bits, length) : 0;
+        fits = fits && distance <= span;
+        std::uint64_t below = nearHigh ? span - distance : distance;
+        *choice = chooseNeighbour(below, span - below);
+        return low + below;
+    };
+    std::size_t i = half;
+    for (std::size_t j = 0; j < between && fits; ++j, ++choice, i += 2 * half)
+        keys[i] = decodeOne(keys[i - half], keys[i + half]);
+    if (fits && between < tokens.size()) {
+        keys[i] = decodeOne(keys[i - half], (std::uint64_t{1} << layout_.keyBits) - 1);
+        *choice = NeighbourChoice::lower;
     }
-    if (next != tokenCount)
+    if (!fits)
+        return Error{ErrorCode::corrupt, "a key leaves the bracket of its neighbours", {}, {}};
+    if (token != tokens.data() + tokenCount)
         return Error{ErrorCode::corrupt, "the positions do not use the tokens that there are", {}, {}};
+    stream = bits;
     return {};
 }
 
@@ -162,46 +174,54 @@ void PositionDecoder::decodeLows(int stratum, BitReader& bits) {
 Result<std::vector<Vec3<std::uint32_t>>> PositionDecoder::takePositions() {
     BitPermutation toPacked = packedFromKey(layout_);
     std::vector<Vec3<std::uint32_t>> points(strataPrefixPoints(pointCount_, decoded_));
-    std::array<std::uint32_t, 3> largest{};
-    for (int stratum = 0; stratum < decoded_; ++stratum)
-        place(stratum, toPacked, largest,
-              std::span(points).subspan(strataPrefixPoints(pointCount_, stratum),
-                                        stratumPoints(pointCount_, stratum)));
-    for (std::size_t a = 0; a < 3; ++a)
-        if (largest[a] > layout_.extent[a])
-            return Error{ErrorCode::corrupt, "a point lies outside the extent that its node states", {}, {}};
+    bool inside = true;
+    for (int stratum = 0; stratum < decoded_; ++stratum) {
+        auto part = std::span(points).subspan(strataPrefixPoints(pointCount_, stratum),
+                                              stratumPoints(pointCount_, stratum));
+        bool placed = layout_.lowBits > 0 ? place<true>(stratum, toPacked, part)
+                                          : place<false>(stratum, toPacked, part);
+        inside = inside && placed;
+    }
+    if (!inside)
+        return Error{ErrorCode::corrupt, "a point lies outside the extent that its node states", {}, {}};
     return points;
 }
 
-// Coordinates of a stratum's points, in the progressive order.
-void PositionDecoder::place(int stratum, const BitPermutation& toPacked,
-                            std::array<std::uint32_t, 3>& largest, std::span<Vec3<std::uint32_t>> to) const {
+// Coordinates of a stratum's points, in the progressive order; false if one is larger than the extent.
+template <bool hasLows>
+bool PositionDecoder::place(int stratum, const BitPermutation& toPacked,
+                            std::span<Vec3<std::uint32_t>> to) const {
+    const KeyLayout layout = layout_; // a copy, so that the loop may keep it in registers
     std::size_t first = stratumFirst(stratum) / spacing_, step = stratumStep(stratum) / spacing_;
-    std::array<std::uint64_t, 3> mask{};
-    for (std::size_t a = 0; a < 3; ++a)
-        mask[a] = (std::uint64_t{1} << layout_.keyBitsOf[a]) - 1;
-    int shiftY = layout_.keyBitsOf[0], shiftZ = shiftY + layout_.keyBitsOf[1];
-    std::size_t out = 0;
+    int shiftY = layout.keyBitsOf[0], shiftZ = shiftY + layout.keyBitsOf[1];
+    std::uint64_t maskX = (std::uint64_t{1} << layout.keyBitsOf[0]) - 1;
+    std::uint64_t maskY = (std::uint64_t{1} << layout.keyBitsOf[1]) - 1;
+    Vec3<std::uint32_t> largest;
+    // Keys are unpacked in Morton order, where neighbours share most of their bits and so the tables' lines,
+    // and laid close together for the jumps that follow.
+    std::vector<std::uint64_t> packedKeys(to.size());
+    for (std::size_t j = 0; j < packedKeys.size(); ++j)
+        packedKeys[j] = toPacked(keys_[first + j * step]);
+    Vec3<std::uint32_t>* out = to.data();
     for (std::uint32_t j : bitReversedOrder(static_cast<std::uint32_t>(to.size()))) {
-        std::size_t i = first + j * step;
-        std::uint64_t packed = toPacked(keys_[i]);
-        std::array<std::uint32_t, 3> q{static_cast<std::uint32_t>(packed & mask[0]),
-                                       static_cast<std::uint32_t>((packed >> shiftY) & mask[1]),
-                                       static_cast<std::uint32_t>((packed >> shiftZ) & mask[2])};
-        if (layout_.lowBits > 0) {
-            std::uint64_t low = lows_[i];
-            for (std::size_t a = 0; a < 3; ++a) {
-                int count = layout_.lowBitsOf[a];
-                q[a] = (q[a] << count) | static_cast<std::uint32_t>(low & ((std::uint64_t{1} << count) - 1));
+        std::uint64_t packed = packedKeys[j];
+        Vec3<std::uint32_t> q{static_cast<std::uint32_t>(packed & maskX),
+                              static_cast<std::uint32_t>((packed >> shiftY) & maskY),
+                              static_cast<std::uint32_t>(packed >> shiftZ)};
+        if constexpr (hasLows) {
+            std::uint64_t low = lows_[first + j * step];
+            for (int axis = 0; axis < 3; ++axis) {
+                int count = layout.lowBitsOf[static_cast<std::size_t>(axis)];
+                q[axis] =
+                    (q[axis] << count) | static_cast<std::uint32_t>(low & ((std::uint64_t{1} << count) - 1));
                 low >>= count;
             }
         }
-        for (std::size_t a = 0; a < 3; ++a) {
-            largest[a] = std::max(largest[a], q[a]);
-            to[out][static_cast<int>(a)] = layout_.origin[a] + layout_.step[a] * q[a];
-        }
-        ++out;
+        largest = {std::max(largest.x, q.x), std::max(largest.y, q.y), std::max(largest.z, q.z)};
+        *out++ = {layout.origin[0] + layout.step[0] * q.x, layout.origin[1] + layout.step[1] * q.y,
+                  layout.origin[2] + layout.step[2] * q.z};
     }
+    return largest.x <= layout.extent[0] && largest.y <= layout.extent[1] && largest.z <= layout.extent[2];
 }
 
 } // namespace stipple

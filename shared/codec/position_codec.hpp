@@ -54,8 +54,8 @@ class PositionDecoder {
     Status decodeBetween(int stratum, BitReader& bits, std::span<const std::uint8_t> tokens,
                          std::size_t tokenCount);
     void decodeLows(int stratum, BitReader& bits);
-    void place(int stratum, const BitPermutation& toPacked, std::array<std::uint32_t, 3>& largest,
-               std::span<Vec3<std::uint32_t>> to) const;
+    template <bool hasLows>
+    bool place(int stratum, const BitPermutation& toPacked, std::span<Vec3<std::uint32_t>> to) const;
 
     std::uint32_t pointCount_;
     int nodeBits_, strata_;

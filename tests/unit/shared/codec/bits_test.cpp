@@ -62,7 +62,8 @@ TEST_CASE("bits of every width come back, and reading past the end is noticed") 
         values.emplace_back(value, count);
         to.write(value, count);
     }
-    BitReader from(to.take());
+    PaddedBytes stream(to.take());
+    BitReader from(stream);
     bool equal = true;
     for (auto [value, count] : values)
         equal = equal && from.read(count) == value;
