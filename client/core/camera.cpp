@@ -232,4 +232,17 @@ Camera zoomTo(const Camera& camera, double factor, double x, double y, int width
     return resolvable ? keptIfUsable(zoomed, camera) : camera;
 }
 
+Camera withProjection(const Camera& camera, Projection projection) {
+    if (camera.projection == projection)
+        return camera;
+    double halfSlope = std::tan(camera.fovYDegrees * radiansPerDegree / 2);
+    Camera switched = camera;
+    switched.projection = projection;
+    if (projection == Projection::orthographic)
+        switched.orthoHeight = 2 * halfSlope * length(camera.target - camera.position);
+    else
+        switched.position = camera.target - axesOf(camera).forward * (camera.orthoHeight / 2 / halfSlope);
+    return keptIfUsable(switched, camera);
+}
+
 } // namespace stipple

@@ -51,4 +51,8 @@ Camera pan(const Camera& camera, double dx, double dy, int height);
 // Zooms by `factor` (< 1 nearer) keeping the world point under pixel (x, y) at the target's depth fixed.
 Camera zoomTo(const Camera& camera, double factor, double x, double y, int width, int height);
 
+// The camera under the other projection: what lies at the target's depth keeps its size and place. From
+// perspective the height of the view changes, to perspective the distance from the target.
+Camera withProjection(const Camera& camera, Projection projection);
+
 } // namespace stipple

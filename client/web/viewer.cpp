@@ -8,35 +8,8 @@
 
 #include <emscripten/heap.h>
 
-#include <cmath>
-#include <numbers>
-
 namespace stipple::web {
 namespace {
-
-std::optional<NamedView> namedViewOf(std::string_view name) {
-    if (name == "top")
-        return NamedView::top;
-    if (name == "front")
-        return NamedView::front;
-    if (name == "iso")
-        return NamedView::iso;
-    return std::nullopt;
-}
-
-// The same picture at the target's depth under the other projection.
-Camera withProjection(Camera camera, Projection projection) {
-    if (camera.projection == projection)
-        return camera;
-    camera.projection = projection;
-    Vec3d back = camera.position - camera.target;
-    double halfSlope = std::tan(camera.fovYDegrees * std::numbers::pi / 360);
-    if (projection == Projection::orthographic)
-        camera.orthoHeight = 2 * length(back) * halfSlope;
-    else
-        camera.position = camera.target + normalized(back) * (camera.orthoHeight / 2 / halfSlope);
-    return camera;
-}
 
 Error contextError() {
     return {ErrorCode::unsupported, "this browser gives the page no WebGL2", "",
@@ -132,7 +105,7 @@ void Viewer::zoom(double factor, double x, double y) {
 }
 
 Status Viewer::showView(const std::string& name) {
-    pendingView_ = namedViewOf(name);
+    pendingView_ = namedViewFromName(name);
     if (!pendingView_)
         return Error{ErrorCode::invalidArgument, "the views are top, front and iso", name, ""};
     applyPendingView();

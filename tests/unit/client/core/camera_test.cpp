@@ -265,6 +265,33 @@ TEST_CASE("an orbit stops short of the pole and leaves it again") {
     CHECK(turned.right.y == Approx(-1).epsilon(1e-6));
 }
 
+TEST_CASE("another projection keeps the size and place of what lies at the target's depth") {
+    auto from = GENERATE(Projection::perspective, Projection::orthographic);
+    auto to = GENERATE(Projection::perspective, Projection::orthographic);
+    Camera camera = someCamera(from);
+    Camera switched = withProjection(camera, to);
+    CHECK(switched.projection == to);
+    CHECK(unitsPerPixel(switched, height) == Approx(unitsPerPixel(camera, height)));
+    ViewTransform before = viewTransform(camera, width, height, unitBox);
+    ViewTransform after = viewTransform(switched, width, height, unitBox);
+    CHECK(length(after.forward - before.forward) < 1e-12);
+    for (double x : {-3.0, 0.0, 5.0})
+        for (double y : {-2.0, 4.0}) {
+            Vec3d point = camera.target + before.right * x + before.up * y;
+            CHECK(distanceInPixels(projectToPixels(before, width, height, point),
+                                   projectToPixels(after, width, height, point)) < 1e-9);
+        }
+    Camera back = withProjection(switched, from);
+    CHECK(length(back.target - camera.target) < 1e-12);
+    CHECK(unitsPerPixel(back, height) == Approx(unitsPerPixel(camera, height)));
+}
+
+TEST_CASE("a camera that stands on its target has no height of view to switch to") {
+    Camera camera;
+    camera.position = camera.target;
+    CHECK(withProjection(camera, Projection::orthographic) == camera);
+}
+
 TEST_CASE("cameras with impossible numbers are not usable") {
     Camera camera;
     CHECK(isUsable(camera));
