@@ -1,5 +1,5 @@
 // One cloud of a session: how far it is opened, its hierarchy, and what of each node can be drawn. It says
-// what to load and takes in what was loaded; asking, decoding and caching are the session's.
+// what to load and takes in what was loaded; asking, decoding and caching are SessionLoading's.
 #pragma once
 
 #include "client/core/hierarchy.hpp"
@@ -9,6 +9,7 @@
 #include "client/core/selection.hpp"
 #include "client/core/view_session.hpp"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -52,5 +53,7 @@ struct CloudLoader {
   private:
     LoadItem itemFor(LoadKind kind, std::uint64_t id, ByteRange range) const;
 };
+
+using CloudMap = std::map<CloudId, CloudLoader>;
 
 } // namespace stipple

@@ -1,0 +1,134 @@
+#include "client/core/node_decoding.hpp"
+
+namespace stipple {
+
+namespace {
+
+constexpr int maxDecodeAttempts = 2;
+
+} // namespace
+
+NodeDecoding::NodeDecoding(NodeDecoder& decoder, NodeCache& cache, SessionCounters& counters)
+    : decoder_(decoder), cache_(cache), counters_(counters) {}
+
+NodeDecoding::~NodeDecoding() {
+    *alive_ = false;
+}
+
+void NodeDecoding::takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& loaded) {
+    CacheKey key{cloud.state.id, node};
+    CachedNode& cached = cache_.obtain(key);
+    if (cached.strataFetched != loaded.item.fromStrata)
+        return; // what these bytes continue was dropped in between
+    if (cached.compressed.empty())
+        cached.compressed = std::move(*loaded.bytes);
+    else
+        cached.compressed.insert(cached.compressed.end(), loaded.bytes->begin(), loaded.bytes->end());
+    cached.strataFetched = loaded.item.strata;
+    cache_.recount(key);
+    if (!cached.decodingPicture)
+        decodePicture(cloud, node, cached);
+}
+
+void NodeDecoding::takeIntensity(CloudLoader& cloud, std::uint32_t node, Bytes bytes) {
+    DecodeJob job;
+    job.entry = cloud.hierarchy.node(node).entry;
+    job.strata = 0;
+    job.wantsIntensity = true;
+    job.intensity = std::move(bytes);
+    cache_.obtain({cloud.state.id, node}).decodingIntensity = true;
+    decode(cloud, node, std::move(job));
+}
+
+NodeDecoding::Taken NodeDecoding::takeAnswers(CloudMap& clouds) {
+    Taken taken;
+    std::deque<Answer> answers = std::move(answers_);
+    answers_.clear();
+    for (Answer& answer : answers) {
+        --pending_;
+        bytesPending_ -= answer.bytes;
+        auto at = clouds.find(answer.key.cloud);
+        CachedNode* cached = cache_.find(answer.key);
+        if (at == clouds.end() || !at->second.ready() || !cached)
+            continue; // removed, failed or evicted meanwhile
+        CloudLoader& cloud = at->second;
+        taken.changed = true;
+        (answer.strata > 0 ? cached->decodingPicture : cached->decodingIntensity) = false;
+        if (!answer.node.ok()) {
+            if (takeFailure(cloud, answer, *cached))
+                taken.errors.push_back(cloud.placed(answer.node.error()));
+        } else if (answer.strata > 0) {
+            takeDecodedPicture(cloud, answer, *cached);
+        } else {
+            takeDecodedIntensity(answer, *cached);
+        }
+        cache_.recount(answer.key);
+        cloud.updateResidency(answer.key.node, cached);
+    }
+    return taken;
+}
+
+void NodeDecoding::decodePicture(CloudLoader& cloud, std::uint32_t node, CachedNode& cached) {
+    DecodeJob job;
+    job.entry = cloud.hierarchy.node(node).entry;
+    job.strata = cached.strataFetched;
+    job.picture = cached.compressed;
+    cached.decodingPicture = true;
+    cached.strataDecoding = job.strata;
+    decode(cloud, node, std::move(job));
+}
+
+void NodeDecoding::decode(CloudLoader& cloud, std::uint32_t node, DecodeJob job) {
+    job.cloud = cloud.state.id;
+    job.metadata = cloud.opened.metadata;
+    CacheKey key{cloud.state.id, node};
+    int strata = job.strata;
+    std::uint64_t bytes = job.picture.size() + job.intensity.size();
+    bytesPending_ += bytes;
+    ++pending_;
+    decoder_.decode(std::move(job), [this, alive = alive_, key, strata, bytes](Result<ResidentNode> decoded) {
+        if (*alive)
+            answers_.push_back({key, strata, bytes, std::move(decoded)});
+    });
+}
+
+bool NodeDecoding::takeFailure(CloudLoader& cloud, const Answer& answer, CachedNode& cached) {
+    if (answer.strata > 0) {
+        // The bytes may have been damaged on their way: once more from the start.
+        cached.compressed = {};
+        cached.strataFetched = 0;
+    }
+    int failures = ++cloud.decodeFailures[answer.key.node];
+    if (failures < maxDecodeAttempts)
+        return false;
+    cloud.residency[answer.key.node].failed = true;
+    return true;
+}
+
+void NodeDecoding::takeDecodedPicture(CloudLoader& cloud, Answer& answer, CachedNode& cached) {
+    ++counters_.nodesDecoded;
+    counters_.pointsDecoded += answer.node->pointCount;
+    ResidentNode node = std::move(*answer.node);
+    if (cached.intensity)
+        node = withIntensity(node, *cached.intensity);
+    bool complete = node.pointCount == node.totalPoints;
+    cached.node = std::make_shared<const ResidentNode>(std::move(node));
+    if (complete) {
+        cached.strataFetched = strataCount; // strata may be empty
+        cached.compressed = {};
+        cached.intensity.reset();
+    } else if (cached.strataFetched > answer.strata) {
+        decodePicture(cloud, answer.key.node, cached);
+    }
+}
+
+void NodeDecoding::takeDecodedIntensity(Answer& answer, CachedNode& cached) {
+    auto intensity = std::make_shared<std::vector<float>>(std::move(answer.node->intensity));
+    bool complete = cached.node && cached.node->pointCount == cached.node->totalPoints;
+    if (cached.node)
+        cached.node = std::make_shared<const ResidentNode>(withIntensity(*cached.node, *intensity));
+    if (!complete)
+        cached.intensity = std::move(intensity);
+}
+
+} // namespace stipple

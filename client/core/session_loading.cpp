@@ -1,0 +1,207 @@
+#include "client/core/session_loading.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace stipple {
+
+namespace {
+
+// With several things to wait for, each is waited for this long in turn.
+constexpr std::chrono::milliseconds waitSlice{2};
+
+std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
+    return cloud.hierarchy.node(node).entry.key.text();
+}
+
+} // namespace
+
+SessionLoading::SessionLoading(NodeDecoder& decoder, SessionCounters& counters, ViewSession::Now now)
+    : counters_(counters), now_(now), queue_(counters), decoding_(decoder, cache_, counters) {}
+
+SessionLoading::~SessionLoading() {
+    for (auto& [id, cloud] : clouds_)
+        queue_.removeSource(id);
+}
+
+CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::string& name) {
+    CloudId id = ++lastCloud_;
+    CloudLoader& cloud = clouds_[id];
+    cloud.state.id = id;
+    cloud.state.name = name;
+    cloud.source = std::move(source);
+    cloud.format = makeStippleNodeSource();
+    queue_.addSource(id, *cloud.source);
+    cloud.advanceOpening();
+    return id;
+}
+
+bool SessionLoading::remove(CloudId id) {
+    if (clouds_.count(id) == 0)
+        return false;
+    release(id);
+    clouds_.erase(id);
+    return true;
+}
+
+// --- waiting -------------------------------------------------------------------------------------------
+
+int SessionLoading::pumpAll(std::chrono::milliseconds wait) {
+    int delivered = 0;
+    for (auto& [id, cloud] : clouds_)
+        if (queue_.awaits(id))
+            delivered += cloud.source->pump(delivered == 0 ? wait : std::chrono::milliseconds{});
+    if (decoding_.pending())
+        delivered += decoding_.pump(delivered == 0 ? wait : std::chrono::milliseconds{});
+    return delivered;
+}
+
+bool SessionLoading::hasArrivals() const {
+    return !local_.empty() || decoding_.hasAnswers() || queue_.hasArrivals();
+}
+
+// Things that pump() could wait for.
+std::ptrdiff_t SessionLoading::awaited() const {
+    return (decoding_.pending() ? 1 : 0) +
+           std::count_if(clouds_.begin(), clouds_.end(),
+                         [&](const auto& cloud) { return queue_.awaits(cloud.first); });
+}
+
+void SessionLoading::deliver(std::chrono::milliseconds wait) {
+    pumpAll({});
+    auto end = std::chrono::steady_clock::now() + wait;
+    while (wait.count() > 0 && !hasArrivals()) {
+        auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+        bool pausing = queue_.nextRetry() != LoadQueue::Clock::time_point::max();
+        if (left.count() <= 0 || (pausing && queue_.nextRetry() <= now_()))
+            return;
+        if (queue_.requestsInFlight() > 0 || decoding_.pending())
+            pumpAll(std::min(left, awaited() == 1 ? left : waitSlice));
+        else if (pausing)
+            std::this_thread::sleep_for(std::min(left, waitSlice));
+        else
+            return; // nothing is on its way
+    }
+}
+
+bool SessionLoading::anyOpening() const {
+    return std::any_of(clouds_.begin(), clouds_.end(),
+                       [](const auto& cloud) { return cloud.second.opening(); });
+}
+
+bool SessionLoading::idle() const {
+    return !anyOpening() && local_.empty() && !decoding_.hasAnswers() && !decoding_.pending() &&
+           queue_.idle();
+}
+
+// --- asking --------------------------------------------------------------------------------------------
+
+void SessionLoading::want(std::vector<LoadItem> items) {
+    auto here = std::stable_partition(items.begin(), items.end(), [](const LoadItem& item) {
+        return item.range.size > 0 || item.key.kind == LoadKind::opening;
+    });
+    for (auto item = here; item != items.end(); ++item) {
+        Bytes bytes = std::move(item->head);
+        local_.push_back({std::move(*item), std::move(bytes)});
+    }
+    items.erase(here, items.end());
+    queue_.want(std::move(items));
+}
+
+void SessionLoading::start(const SessionLimits& limits) {
+    queue_.start(
+        {limits.requestsInFlight, limits.bytesInFlight, limits.mergeGapBytes, limits.mergedRequestBytes},
+        decoding_.bytesPending(), now_());
+}
+
+// --- arrivals ------------------------------------------------------------------------------------------
+
+SessionLoading::Arrivals SessionLoading::takeArrivals() {
+    Arrivals arrivals;
+    std::vector<Loaded> loaded = std::move(local_);
+    local_.clear();
+    for (Loaded& more : queue_.take(now_()))
+        loaded.push_back(std::move(more));
+    for (Loaded& one : loaded)
+        takeLoaded(one, arrivals);
+    // An inline decoder has answered by now.
+    NodeDecoding::Taken taken = decoding_.takeAnswers(clouds_);
+    arrivals.changed |= taken.changed;
+    for (const Error& error : taken.errors)
+        remember(error);
+    return arrivals;
+}
+
+void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
+    auto at = clouds_.find(loaded.item.key.cloud);
+    if (at == clouds_.end() || at->second.state.stage == CloudStage::failed)
+        return;
+    CloudLoader& cloud = at->second;
+    auto node = static_cast<std::uint32_t>(loaded.item.key.id);
+    arrivals.changed = true;
+    if (!loaded.bytes.ok()) {
+        takeFailure(cloud, loaded.item, loaded.bytes.error(), arrivals);
+        return;
+    }
+    switch (loaded.item.key.kind) {
+    case LoadKind::opening:
+        cloud.fetched.add(loaded.item.range.offset, std::move(*loaded.bytes));
+        cloud.advanceOpening();
+        if (cloud.state.stage == CloudStage::failed)
+            failed(cloud, arrivals);
+        break;
+    case LoadKind::chunk: {
+        Status added = cloud.addChunk(node, *loaded.bytes);
+        if (!added.ok())
+            remember(cloud.placed(added.error().at("chunk below node " + keyText(cloud, node))));
+        else
+            ++counters_.chunksLoaded;
+        break;
+    }
+    case LoadKind::picture:
+        decoding_.takePicture(cloud, node, loaded);
+        break;
+    case LoadKind::intensity:
+        decoding_.takeIntensity(cloud, node, std::move(*loaded.bytes));
+        break;
+    }
+}
+
+void SessionLoading::takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error,
+                                 Arrivals& arrivals) {
+    auto node = static_cast<std::uint32_t>(item.key.id);
+    if (error.code == ErrorCode::changed || item.key.kind == LoadKind::opening) {
+        cloud.fail(error);
+        failed(cloud, arrivals);
+        return;
+    }
+    if (item.key.kind == LoadKind::chunk)
+        cloud.hierarchy.markChildrenFailed(node);
+    else
+        cloud.residency[node].failed = true;
+    remember(cloud.placed(error.at("node " + keyText(cloud, node))));
+}
+
+// --- failing and letting go ----------------------------------------------------------------------------
+
+void SessionLoading::failed(CloudLoader& cloud, Arrivals& arrivals) {
+    remember(cloud.state.error);
+    release(cloud.state.id);
+    arrivals.failed.push_back(cloud.state.id);
+}
+
+// Cancels what is on its way and frees all that is held of the cloud.
+void SessionLoading::release(CloudId id) {
+    queue_.removeSource(id);
+    cache_.eraseCloud(id);
+    std::erase_if(local_, [&](const Loaded& loaded) { return loaded.item.key.cloud == id; });
+}
+
+void SessionLoading::remember(const Error& error) {
+    errors_.push_back(error);
+    if (errors_.size() > maxRecentErrors)
+        errors_.pop_front();
+}
+
+} // namespace stipple

@@ -1,0 +1,75 @@
+// The loading of a session: its clouds, what is on its way for them, and the cache of what came. It takes
+// wishes, most urgent first, and says when something has changed; what is wished for is the session's.
+//
+// Thread: the session's.
+#pragma once
+
+#include "client/core/cloud_loader.hpp"
+#include "client/core/counters.hpp"
+#include "client/core/load_queue.hpp"
+#include "client/core/node_cache.hpp"
+#include "client/core/node_decoding.hpp"
+#include "client/core/view_session.hpp"
+
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace stipple {
+
+class SessionLoading {
+  public:
+    // Decoder and counters outlive this.
+    SessionLoading(NodeDecoder& decoder, SessionCounters& counters, ViewSession::Now now);
+    ~SessionLoading();
+
+    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
+    bool remove(CloudId id); // false if there is none
+
+    CloudMap& clouds() { return clouds_; }
+    const CloudMap& clouds() const { return clouds_; }
+    NodeCache& cache() { return cache_; }
+    const NodeCache& cache() const { return cache_; }
+    const std::deque<Error>& errors() const { return errors_; } // at most maxRecentErrors, newest last
+
+    // Lets sources and decoder answer, waiting up to `wait` for the first if something is on its way.
+    void deliver(std::chrono::milliseconds wait);
+
+    struct Arrivals {
+        bool changed = false;        // what can be drawn, or should be asked for
+        std::vector<CloudId> failed; // clouds of which nothing is held any more
+    };
+    // Works off what was delivered.
+    Arrivals takeArrivals();
+
+    // Replaces what is wanted but not on its way, most urgent first.
+    void want(std::vector<LoadItem> items);
+    void start(const SessionLimits& limits); // sends requests while the limits allow
+
+    bool anyOpening() const;
+    // Nothing is wanted, on its way or waiting to be worked off.
+    bool idle() const;
+
+  private:
+    int pumpAll(std::chrono::milliseconds wait);
+    bool hasArrivals() const;
+    std::ptrdiff_t awaited() const;
+    void takeLoaded(Loaded& loaded, Arrivals& arrivals);
+    void takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error, Arrivals& arrivals);
+    void failed(CloudLoader& cloud, Arrivals& arrivals);
+    void release(CloudId id);
+    void remember(const Error& error);
+
+    SessionCounters& counters_;
+    ViewSession::Now now_;
+    NodeCache cache_;
+    LoadQueue queue_;
+    NodeDecoding decoding_;
+    CloudMap clouds_;
+    CloudId lastCloud_ = 0;
+    std::vector<Loaded> local_; // wanted, and here without a request
+    std::deque<Error> errors_;
+};
+
+} // namespace stipple
