@@ -73,12 +73,13 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
     ServerOptions serverOptions;
     serverOptions.host = options.host;
     serverOptions.port = options.port;
+    StopSignals signals;
     auto server = Server::start(serverOptions, site, log);
     if (!server)
         return cli::fail(verb, server.error());
     printAddress(**server, *site, options.asJson);
     onReady((*server)->address());
-    runUntilSignalled(**server, std::chrono::seconds(options.graceSeconds));
+    signals.runUntilSignalled(**server, std::chrono::seconds(options.graceSeconds));
     return cli::success;
 }
 

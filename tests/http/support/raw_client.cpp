@@ -39,6 +39,8 @@ bool RawClient::send(std::string_view bytes) {
 }
 
 bool RawClient::fill(int milliseconds) {
+    if (socket_ < 0)
+        return false; // never connected
     pollfd waiting{socket_, POLLIN, 0};
     if (::poll(&waiting, 1, milliseconds) <= 0)
         return false;
