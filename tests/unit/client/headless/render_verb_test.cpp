@@ -100,7 +100,7 @@ TEST_CASE("the budget bounds the points, and a wider one shows more", "[render]"
     CHECK(all == 120'000);
 }
 
-TEST_CASE("the first picture takes one request of 64 KiB", "[render]") {
+TEST_CASE("the first picture is drawn before all that it lacks has come", "[render]") {
     headless::PictureRequest request;
     request.until = headless::Until::first;
     auto source = openFileSource(cloudFile());
@@ -109,8 +109,7 @@ TEST_CASE("the first picture takes one request of 64 KiB", "[render]") {
     REQUIRE(picture.ok());
     CHECK(picture->frame.pointsDrawn > 0);
     CHECK_FALSE(picture->frame.complete);
-    // What else was asked for by then is still on its way.
-    CHECK(picture->session.nodesDecoded == 1);
+    // How many nodes are decoded by then is up to the threads; view_session_test counts without any.
 }
 
 TEST_CASE("wrong options are told apart before anything is read", "[render]") {
