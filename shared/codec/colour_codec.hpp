@@ -32,7 +32,7 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, int cha
 // Decodes strata one after the other.
 class ColourDecoder {
   public:
-    // For the first `strata` strata. Takes up to 24 bytes of memory a point; the caller has bounded their
+    // For the first `strata` strata. Takes up to 32 bytes of memory a point; the caller has bounded their
     // number.
     ColourDecoder(std::uint32_t pointCount, int channels, int strata);
 

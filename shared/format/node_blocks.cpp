@@ -35,7 +35,7 @@ Status checkEntry(const CloudMetadata& metadata, const NodeEntry& entry) {
     if (entry.key.level > metadata.rootCube.bits ||
         (entry.pointCount > 0 && metadata.rootCube.nodeBits(entry.key.level) > maxNodeBits))
         return Error{ErrorCode::corrupt, "a node of this level cannot hold points", {}, {}};
-    return checkMemory(entry.pointCount, 48); // keys, positions and colour while they are being decoded
+    return checkMemory(entry.pointCount, 64); // keys, positions and colour while they are being decoded
 }
 
 Status checkSize(ByteSpan bytes, std::uint64_t expected) {
