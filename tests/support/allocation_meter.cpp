@@ -9,14 +9,22 @@ namespace {
 
 std::atomic<std::size_t> held{0}, peak{0}, base{0};
 
+// nullptr when there is no memory.
 void* allocate(std::size_t size) {
     void* memory = std::malloc(size > 0 ? size : 1);
     if (memory == nullptr)
-        throw std::bad_alloc();
+        return nullptr;
     std::size_t now = held.fetch_add(malloc_usable_size(memory)) + malloc_usable_size(memory);
     std::size_t highest = peak.load();
     while (now > highest && !peak.compare_exchange_weak(highest, now))
         continue;
+    return memory;
+}
+
+void* allocateOrThrow(std::size_t size) {
+    void* memory = allocate(size);
+    if (memory == nullptr)
+        throw std::bad_alloc();
     return memory;
 }
 
