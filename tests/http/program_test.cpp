@@ -141,6 +141,9 @@ TEST_CASE("serve refuses what it can't serve, with a sentence and a code") {
     CHECK(readFile(errors).find("--port") != std::string::npos);
 }
 
+// UBSan's check of virtual tables opens a pipe to see whether memory can be read, and takes a failure for a
+// wrong table: a process without descriptors can't be judged by it.
+#ifndef __SANITIZE_ADDRESS__
 TEST_CASE("a server that runs out of descriptors recovers when clients leave") {
     TestFolder folder;
     Program program(
@@ -162,3 +165,4 @@ TEST_CASE("a server that runs out of descriptors recovers when clients leave") {
     program.signal(SIGTERM);
     CHECK(program.wait() == 0);
 }
+#endif
