@@ -114,15 +114,15 @@ describe('the picture', () => {
     const looks = {
         'RGB, circles of 3 px': {
             style: { colourMode: 'rgb', sizePixels: 3 },
-            tolerance: { share: 0.03, mean: 1 },
+            tolerance: { share: 0.02, mean: 0.7 },
         },
         'elevation, squares of 5 px': {
             style: { colourMode: 'elevation', gradient: 'turbo', shape: 'square', sizePixels: 5 },
-            tolerance: { share: 0.15, mean: 3.5 },
+            tolerance: { share: 0.095, mean: 2.5 },
         },
         'intensity, world sizes, no EDL': {
             style: { colourMode: 'intensity', sizeMode: 'world', sizeWorld: 0.5, edl: { enabled: false } },
-            tolerance: { share: 0.08, mean: 4 },
+            tolerance: { share: 0.07, mean: 3.5 },
         },
     };
 
