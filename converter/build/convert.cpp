@@ -58,6 +58,14 @@ std::string optionsText(const ConvertOptions& options, const Spacing& spacing) {
     return options.crs.empty() ? text : cat(text, " crs=", options.crs);
 }
 
+// A cloud that is added to is no source itself: the files it was made of are.
+void appendSources(std::vector<SourceFile>& sources, const InputDescription& input) {
+    if (input.madeOf.empty())
+        sources.push_back(input.source);
+    else
+        sources.insert(sources.end(), input.madeOf.begin(), input.madeOf.end());
+}
+
 CloudMetadata describe(const Scan& scan, const Tiles& tiles, const Sampled& sampled, const Spacing& spacing,
                        const std::string& output, const ConvertOptions& options) {
     CloudMetadata metadata;
@@ -76,7 +84,7 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const Sampled& samp
         std::all_of(tiles.points.colour.rgbMax.begin(), tiles.points.colour.rgbMax.end(), fits8Bit);
     metadata.pointHash = tiles.points.hash.hex();
     for (const ScannedInput& input : scan.inputs)
-        metadata.sources.push_back(input.source);
+        appendSources(metadata.sources, input.description());
     std::sort(metadata.sources.begin(), metadata.sources.end(), [](const SourceFile& a, const SourceFile& b) {
         return std::tie(a.name, a.format, a.pointCount, a.sizeBytes) <
                std::tie(b.name, b.format, b.pointCount, b.sizeBytes);
@@ -93,7 +101,7 @@ Result<ConvertResult> runPhases(const std::vector<std::string>& inputs, const st
     result.output = output;
     Stopwatch watch;
 
-    STIPPLE_TRY(scan, scanInputs(inputs, options.crs));
+    STIPPLE_TRY(scan, scanInputs(inputs, ScanOptions{options.crs, {}}));
     result.warnings = scan.warnings;
     result.seconds.scan = watch.lap();
 

@@ -10,24 +10,23 @@
 namespace stipple {
 
 namespace {
-constexpr std::uint64_t pointsPerRead = 65536;
 constexpr std::uint64_t maxPoints = 0xFFFFFFFFu; // indices in memory are 32-bit
 
-// One read of one input.
-struct Slice {
-    std::size_t input = 0;
-    std::uint64_t first = 0, count = 0; // in the input
-    std::uint64_t row = 0;              // of the first point, in the store
+// One part of one input.
+struct Read {
+    std::size_t input = 0, part = 0;
+    std::uint64_t row = 0; // of its first point, in the store
 };
 
-std::vector<Slice> slices(const Scan& scan) {
-    std::vector<Slice> result;
+std::vector<Read> readsOf(const Scan& scan) {
+    std::vector<Read> result;
     std::uint64_t row = 0;
     for (std::size_t i = 0; i < scan.inputs.size(); ++i) {
-        std::uint64_t points = scan.inputs[i].source.pointCount;
-        for (std::uint64_t first = 0; first < points; first += pointsPerRead)
-            result.push_back({i, first, std::min(pointsPerRead, points - first), row + first});
-        row += points;
+        const std::vector<InputPart>& parts = scan.inputs[i].input->parts();
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            result.push_back({i, p, row});
+            row += parts[p].points;
+        }
     }
     return result;
 }
@@ -61,18 +60,18 @@ ColourExtremes colourExtremes(const Schema& schema, const PointBatch& batch) {
 
 // What one thread works with and has summed so far.
 struct Worker {
-    std::size_t input = ~std::size_t{0};
-    OpenInput open;
     PointBatch raw, mapped;
     std::vector<BoxI> inputBounds; // in each input's own integers
     BoxI bounds;
     PointHash hash;
     ColourExtremes colour;
     double gridError = 0;
+    ReadReport report;
 };
 
 bool isIdentity(const Scan& scan, const ScannedInput& input) {
-    if (!input.toCloud.isIdentity() || input.schema.attributes.size() != scan.schema.attributes.size())
+    if (!input.toCloud.isIdentity() ||
+        input.description().schema.attributes.size() != scan.schema.attributes.size())
         return false;
     for (std::size_t a = 0; a < input.attributeSources.size(); ++a)
         if (input.attributeSources[a] != static_cast<int>(a))
@@ -103,22 +102,9 @@ void mapBatch(const Scan& scan, const ScannedInput& input, Worker& worker) {
     }
 }
 
-Status readSlice(const Scan& scan, const Slice& slice, Worker& worker, PointStore& store) {
-    const ScannedInput& input = scan.inputs[slice.input];
-    if (worker.input != slice.input) {
-        STIPPLE_TRY(open, openInput(input.path));
-        worker.open = std::move(open);
-        worker.input = slice.input;
-        if (worker.open.reader->pointCount() != input.source.pointCount ||
-            worker.open.source->sizeBytes() != input.source.sizeBytes)
-            return Error{ErrorCode::changed, "the file changed while it was being read", input.path,
-                         "convert again when it is complete"};
-    }
-    Status read = worker.open.reader->read(slice.first, slice.count, worker.raw);
-    if (!read)
-        return read.error().where.find(input.path) == std::string::npos ? read.error().at(input.path)
-                                                                        : read.error();
-    BoxI& own = worker.inputBounds[slice.input];
+Status takeBatch(const Scan& scan, std::size_t index, Worker& worker, PointStore& store, std::uint64_t row) {
+    const ScannedInput& input = scan.inputs[index];
+    BoxI& own = worker.inputBounds[index];
     for (Vec3i p : worker.raw.positions)
         own.extend(p);
     bool same = isIdentity(scan, input);
@@ -129,7 +115,29 @@ Status readSlice(const Scan& scan, const Slice& slice, Worker& worker, PointStor
         worker.bounds.extend(p);
     worker.hash.add(scan.schema, batch);
     worker.colour.extend(colourExtremes(scan.schema, batch));
-    store.put(static_cast<std::size_t>(slice.row), batch);
+    store.put(static_cast<std::size_t>(row), batch);
+    return {};
+}
+
+Status readPart(const Scan& scan, const Read& read, Worker& worker, PointStore& store) {
+    const PointInput& input = *scan.inputs[read.input].input;
+    STIPPLE_TRY(stream, input.openPart(read.part));
+    std::uint64_t row = read.row, end = row + input.parts()[read.part].points;
+    for (;;) {
+        STIPPLE_CHECK(stream->next(worker.raw));
+        if (worker.raw.size() == 0)
+            break;
+        if (worker.raw.size() > end - row)
+            return Error{ErrorCode::changed, "more points came than were counted when it was opened",
+                         input.description().path, "convert again when the file is complete"};
+        STIPPLE_CHECK(takeBatch(scan, read.input, worker, store, row));
+        row += worker.raw.size();
+    }
+    worker.report.add(stream->report());
+    if (row != end)
+        return Error{ErrorCode::changed,
+                     cat(end - row, " points fewer came than were counted when it was opened"),
+                     input.description().path, "convert again when the file is complete"};
     return {};
 }
 
@@ -160,13 +168,14 @@ Result<LoadedPoints> readPoints(const Scan& scan, int threads, const std::atomic
     std::vector<Worker> workers(static_cast<std::size_t>(threads));
     for (Worker& worker : workers)
         worker.inputBounds.resize(scan.inputs.size());
-    std::vector<Slice> reads = slices(scan);
+    std::vector<Read> reads = readsOf(scan);
     std::mutex progressMutex;
     std::uint64_t done = 0;
     auto readOne = [&](std::size_t index, int worker) -> Status {
-        STIPPLE_CHECK(readSlice(scan, reads[index], workers[static_cast<std::size_t>(worker)], loaded.store));
+        const Read& read = reads[index];
+        STIPPLE_CHECK(readPart(scan, read, workers[static_cast<std::size_t>(worker)], loaded.store));
         std::lock_guard lock(progressMutex);
-        done += reads[index].count;
+        done += scan.inputs[read.input].input->parts()[read.part].points;
         progress("tile", done, scan.pointCount);
         return {};
     };
@@ -181,8 +190,9 @@ Result<LoadedPoints> readPoints(const Scan& scan, int threads, const std::atomic
             inputBounds[i].extend(worker.inputBounds[i]);
     }
     for (std::size_t i = 0; i < inputBounds.size(); ++i)
-        if (auto lie = las::boundsContradiction(scan.inputs[i].header, inputBounds[i]))
-            loaded.warnings.push_back(cat(scan.inputs[i].path, ": ", *lie, "; the points' bounds are used"));
+        if (auto lie = scan.inputs[i].input->contradiction(inputBounds[i]))
+            loaded.warnings.push_back(
+                cat(scan.inputs[i].description().path, ": ", *lie, "; the points' bounds are used"));
     if (loaded.maxGridError > 0)
         loaded.warnings.push_back(cat("the inputs' grids have no common one; points moved by at most ",
                                       loaded.maxGridError, " to fit the finest"));

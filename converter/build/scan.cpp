@@ -11,40 +11,6 @@
 namespace stipple {
 
 namespace {
-
-bool isUsable(const Grid& grid) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!std::isfinite(grid.scale[axis]) || grid.scale[axis] <= 0 || !std::isfinite(grid.offset[axis]))
-            return false;
-    return true;
-}
-
-Result<ScannedInput> scanOne(const std::string& path, std::vector<std::string>& warnings) {
-    STIPPLE_TRY(input, openInput(path));
-    const las::Header& header = input.reader->header();
-    ScannedInput scanned;
-    scanned.path = path;
-    scanned.source.name = std::filesystem::path(path).filename().string();
-    scanned.source.format =
-        cat("LAS ", header.versionMajor, ".", header.versionMinor, ", point format ", header.pointFormat);
-    scanned.source.pointCount = input.reader->pointCount();
-    scanned.source.sizeBytes = input.source->sizeBytes();
-    scanned.grid = header.grid;
-    scanned.schema = input.reader->schema();
-    scanned.header = header;
-    scanned.header.vlrs.clear();
-    for (const std::string& warning : input.reader->warnings())
-        warnings.push_back(cat(path, ": ", warning));
-    if (!isUsable(scanned.grid))
-        return Error{ErrorCode::corrupt, "a scale factor or offset of the header is no usable number", path,
-                     ""};
-    STIPPLE_TRY(reading, crsOfLas(header));
-    scanned.crs = reading.crs;
-    for (const std::string& warning : reading.warnings)
-        warnings.push_back(cat(path, ": ", warning));
-    return scanned;
-}
-
 Status refuseDoubles(const std::vector<std::string>& paths) {
     std::vector<std::filesystem::path> seen;
     for (const std::string& path : paths) {
@@ -88,26 +54,28 @@ Result<Crs> commonCrs(const std::vector<ScannedInput>& inputs, const std::string
         from = "--crs";
     }
     for (const ScannedInput& input : inputs) {
-        if (!input.crs.known())
+        const InputDescription& stated = input.description();
+        if (!stated.crs.known())
             continue;
         if (!common.known()) {
-            common = input.crs;
-            from = input.path;
-        } else if (!sameCrs(common, input.crs)) {
+            common = stated.crs;
+            from = stated.path;
+        } else if (!sameCrs(common, stated.crs)) {
             return Error{
                 ErrorCode::invalidArgument,
-                cat("its CRS is ", crsText(input.crs), ", but that of ", from, " is ", crsText(common)),
-                input.path, "bring the inputs into one CRS first"};
-        } else if (common.wkt != input.crs.wkt && !input.crs.wkt.empty() &&
-                   (common.wkt.empty() || input.crs.wkt < common.wkt)) {
-            common = input.crs; // of several texts for one system the first by text, in any order of inputs
+                cat("its CRS is ", crsText(stated.crs), ", but that of ", from, " is ", crsText(common)),
+                stated.path, "bring the inputs into one CRS first"};
+        } else if (common.wkt != stated.crs.wkt && !stated.crs.wkt.empty() &&
+                   (common.wkt.empty() || stated.crs.wkt < common.wkt)) {
+            common = stated.crs; // of several texts for one system the first by text, in any order of inputs
         }
     }
     if (!common.known() && !inputs.empty())
         warnings.push_back("no input states a coordinate reference system; --crs EPSG:n sets it");
     for (const ScannedInput& input : inputs)
-        if (common.known() && !input.crs.known() && wanted.empty())
-            warnings.push_back(cat(input.path, ": states no CRS; taken to be ", crsText(common)));
+        if (common.known() && !input.description().crs.known() && wanted.empty())
+            warnings.push_back(
+                cat(input.description().path, ": states no CRS; taken to be ", crsText(common)));
     return common;
 }
 
@@ -118,24 +86,21 @@ void reportMissingAttributes(const Scan& scan, std::vector<std::string>& warning
             if (input.attributeSources[a] < 0)
                 missing += cat(missing.empty() ? "" : ", ", scan.schema.attributes[a].name);
         if (!missing.empty())
-            warnings.push_back(cat(input.path, ": filled with 0, as the file does not have it: ", missing));
+            warnings.push_back(
+                cat(input.description().path, ": filled with 0, as the file does not have it: ", missing));
     }
 }
 
 // LAS keeps what GPS times count from in the file's header; a cloud keeps it in the attribute.
-constexpr std::uint16_t standardTimeBit = 1;
 void describeGpsTime(Scan& scan) {
     int attribute = scan.schema.find(attribute_names::gpsTime);
     bool standard = false, week = false;
     for (const ScannedInput& input : scan.inputs) {
-        if (input.schema.find(attribute_names::gpsTime) < 0)
-            continue;
-        bool isStandard = (input.header.globalEncoding & standardTimeBit) != 0;
-        standard = standard || isStandard;
-        week = week || !isStandard;
+        standard = standard || input.description().gpsTime == GpsTimeKind::adjustedStandard;
+        week = week || input.description().gpsTime == GpsTimeKind::week;
     }
     if (attribute < 0 || standard == week) {
-        if (attribute >= 0)
+        if (attribute >= 0 && standard)
             scan.warnings.push_back(
                 "some inputs hold adjusted standard GPS times, others GPS week times; they "
                 "are kept as they are");
@@ -147,19 +112,22 @@ void describeGpsTime(Scan& scan) {
 
 } // namespace
 
-Result<Scan> scanInputs(const std::vector<std::string>& paths, const std::string& crs) {
+Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions& options) {
     Scan scan;
     if (paths.empty())
-        return Error{ErrorCode::invalidArgument, "there is no input", "", "name at least one LAS file"};
+        return Error{ErrorCode::invalidArgument, "there is no input", "", "name at least one file"};
     STIPPLE_CHECK(refuseDoubles(paths));
     std::vector<Grid> grids;
     std::vector<Schema> schemas;
     for (const std::string& path : paths) {
-        STIPPLE_TRY(input, scanOne(path, scan.warnings));
-        scan.pointCount += input.source.pointCount;
-        grids.push_back(input.grid);
-        schemas.push_back(input.schema);
-        scan.inputs.push_back(std::move(input));
+        STIPPLE_TRY(input, openInput(path, options.input));
+        const InputDescription& description = input->description();
+        for (const std::string& warning : description.warnings)
+            scan.warnings.push_back(cat(path, ": ", warning));
+        scan.pointCount += description.source.pointCount;
+        grids.push_back(description.grid);
+        schemas.push_back(description.schema);
+        scan.inputs.emplace_back().input = std::move(input);
     }
     scan.grid = commonGrid(grids);
     CommonSchema common = commonSchema(schemas);
@@ -168,7 +136,7 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const std::string
         scan.inputs[i].toCloud = gridMap(grids[i], scan.grid);
         scan.inputs[i].attributeSources = common.sources[i];
     }
-    STIPPLE_TRY(crsOfAll, commonCrs(scan.inputs, crs, scan.warnings));
+    STIPPLE_TRY(crsOfAll, commonCrs(scan.inputs, options.crs, scan.warnings));
     scan.crs = crsOfAll;
     reportMissingAttributes(scan, scan.warnings);
     describeGpsTime(scan);
@@ -193,7 +161,7 @@ std::vector<std::string> mapOnto(Scan& scan, const Grid& grid, const Schema& sch
                 sources[a] = input.attributeSources[static_cast<std::size_t>(merged)];
         }
         input.attributeSources = std::move(sources);
-        input.toCloud = gridMap(input.grid, grid);
+        input.toCloud = gridMap(input.description().grid, grid);
     }
     scan.grid = grid;
     scan.schema = schema;

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "converter/build/common_grid.hpp"
+#include "converter/input/open.hpp"
 #include "shared/base/result.hpp"
 #include "shared/format/cloud_metadata.hpp"
-#include "shared/io/byte_source.hpp"
-#include "shared/las/las_reader.hpp"
 
 #include <memory>
 #include <string>
@@ -14,16 +13,13 @@
 namespace stipple {
 
 struct ScannedInput {
-    std::string path;
-    SourceFile source; // source.pointCount: points that are really there
-    Grid grid;
-    Schema schema;
-    Crs crs;
-    las::Header header; // without its records
+    std::unique_ptr<PointInput> input;
 
     // How its points become the cloud's.
     GridMap toCloud;
-    std::vector<int> attributeSources; // for each of the cloud's attributes: index in `schema`, or -1
+    std::vector<int> attributeSources; // for each of the cloud's attributes: index in the input's, or -1
+
+    const InputDescription& description() const { return input->description(); }
 };
 
 struct Scan {
@@ -35,24 +31,21 @@ struct Scan {
     std::vector<std::string> warnings;
 };
 
-// Opens every input and reads its header. Inputs are told by their first bytes, not by their names. `crs`
-// ("EPSG:n" or empty) is for inputs that state none. Errors name the file: missing, a folder, no LAS file,
-// LAZ (unsupported as yet), given twice, another CRS than the others.
-Result<Scan> scanInputs(const std::vector<std::string>& paths, const std::string& crs);
+struct ScanOptions {
+    std::string crs = {}; // "EPSG:n", for inputs that state none; empty: what the inputs state
+    InputOptions input = {};
+};
+
+// Opens every input and reads what it says of itself. Errors name the file: those of openInput; given twice,
+// another CRS than the others.
+Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions& options);
 
 // Lets the scanned points be read as points of another cloud (to compare with it). Attributes go by name;
 // those that the cloud lacks, or has with another type or scale, are returned by name.
 std::vector<std::string> mapOnto(Scan& scan, const Grid& grid, const Schema& schema);
 
-// What a cloud's GPS Time counts from (LAS: global encoding, bit 0) is the attribute's description.
+// What a cloud's GPS Time counts from is the attribute's description.
 inline constexpr const char* standardGpsTimeText = "adjusted standard GPS time";
 inline constexpr const char* weekGpsTimeText = "GPS week time";
-
-// A LAS input and the bytes behind it.
-struct OpenInput {
-    std::unique_ptr<ByteSource> source;
-    std::unique_ptr<las::Reader> reader;
-};
-Result<OpenInput> openInput(const std::string& path);
 
 } // namespace stipple

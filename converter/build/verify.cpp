@@ -196,7 +196,7 @@ class Verification {
 
     Status compareWithInputs(const std::vector<std::string>& inputs, const CloudMetadata& metadata,
                              const PointStore& store, int threads) {
-        STIPPLE_TRY(scan, scanInputs(inputs, ""));
+        STIPPLE_TRY(scan, scanInputs(inputs, {}));
         for (const std::string& name : mapOnto(scan, metadata.grid, metadata.schema))
             fault(cat("the inputs' attribute ", name, " is missing or of another type in the file"));
         STIPPLE_TRY(loaded, readPoints(scan, threads, stop_, progress_));

@@ -1,7 +1,7 @@
 #include "converter/verbs/info_las.hpp"
 
-#include "converter/build/scan.hpp"
 #include "converter/crs/crs.hpp"
+#include "converter/input/las_input.hpp"
 #include "converter/verbs/metadata_json.hpp"
 
 #include <fmt/format.h>
@@ -10,7 +10,7 @@ namespace stipple {
 
 namespace {
 struct LasInfo {
-    OpenInput input;
+    OpenLas input;
     Crs crs;
     std::vector<std::string> warnings;
 
@@ -18,7 +18,7 @@ struct LasInfo {
 };
 
 Result<LasInfo> readLasInfo(const std::string& path) {
-    STIPPLE_TRY(input, openInput(path));
+    STIPPLE_TRY(input, openLas(path));
     STIPPLE_TRY(reading, crsOfLas(input.reader->header()));
     LasInfo info;
     info.warnings = input.reader->warnings();
@@ -28,15 +28,10 @@ Result<LasInfo> readLasInfo(const std::string& path) {
     return info;
 }
 
-std::string formatText(const las::Header& header) {
-    return fmt::format("LAS {}.{}, point format {}", header.versionMajor, header.versionMinor,
-                       header.pointFormat);
-}
-
 void printAsJson(const std::string& path, const LasInfo& info) {
     const las::Header& header = info.header();
     cli::Json json = {{"file", path},
-                      {"format", formatText(header)},
+                      {"format", lasFormatText(header)},
                       {"bytes", info.input.source->sizeBytes()},
                       {"points", info.input.reader->pointCount()},
                       {"statedPoints", header.pointCount},
@@ -65,7 +60,7 @@ void printAsJson(const std::string& path, const LasInfo& info) {
 
 void printAsText(const std::string& path, const LasInfo& info) {
     const las::Header& header = info.header();
-    fmt::print("{}: {}, {} points, {} bytes\n", path, formatText(header), info.input.reader->pointCount(),
+    fmt::print("{}: {}, {} points, {} bytes\n", path, lasFormatText(header), info.input.reader->pointCount(),
                info.input.source->sizeBytes());
     fmt::print("made by \"{}\" with \"{}\"\n", header.systemIdentifier, header.generatingSoftware);
     fmt::print("CRS: {}\n", cli::crsText(info.crs));

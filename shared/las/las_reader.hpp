@@ -9,6 +9,7 @@
 #include "shared/points/point_batch.hpp"
 
 #include <memory>
+#include <span>
 
 namespace stipple::las {
 
@@ -27,6 +28,10 @@ class Reader {
     virtual std::uint64_t pointCount() const = 0;
     // What in the file contradicts itself, one sentence each, with positions.
     virtual const std::vector<std::string>& warnings() const = 0;
+
+    // First points of the parts that can be entered without decoding what comes before (LAZ chunks), rising,
+    // the first 0. Empty: reading can start anywhere.
+    virtual std::span<const std::uint64_t> chunkStarts() const { return {}; }
 
     // Points [first, first + count) into `batch` (resized; fewer where the file ends before). Positions are
     // the file's integers (Header::grid). Errors: outOfRange if first > pointCount(), unsupported for LAZ

@@ -31,7 +31,8 @@ TEST_CASE("inputs that can't be read are refused by name, and nothing is left be
     std::filesystem::create_directory(folder / "folder");
     checkRefused(folder, {folder / "folder"}, output, ErrorCode::unsupported, "folder", "is a folder");
     writeText(folder / "text.las", "x y z\n1 2 3\n");
-    checkRefused(folder, {folder / "text.las"}, output, ErrorCode::unsupported, "text.las", "no LAS file");
+    checkRefused(folder, {folder / "text.las"}, output, ErrorCode::unsupported, "text.las",
+                 "of no kind that is read");
     writeText(folder / "mesh.las", "ply\nformat ascii 1.0\n");
     checkRefused(folder, {folder / "mesh.las"}, output, ErrorCode::unsupported, "mesh.las", "PLY");
     writeText(folder / "empty.las", "");

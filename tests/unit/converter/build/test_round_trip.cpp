@@ -10,7 +10,7 @@ using namespace stipple::test;
 namespace {
 // What verify --against does, for two LAS files.
 Comparison compareLas(const std::string& a, const std::string& b) {
-    auto scanA = scanInputs({a}, ""), scanB = scanInputs({b}, "");
+    auto scanA = scanInputs({a}, {}), scanB = scanInputs({b}, {});
     REQUIRE(scanA.ok());
     REQUIRE(scanB.ok());
     CHECK(mapOnto(*scanB, scanA->grid, scanA->schema).empty());

@@ -1,0 +1,20 @@
+// Any file to a PointInput. Files are told by their first bytes, not by their names; only text without a
+// recognisable start is told by its name's ending as well.
+#pragma once
+
+#include "converter/input/point_input.hpp"
+
+namespace stipple {
+
+struct InputOptions {
+    // Names of the columns of text files: "x,y,z,intensity,…"; "-" skips one. Empty: the header, or a guess.
+    std::string columns = {};
+    // Grid step of inputs whose coordinates are floats or decimals, world units. 0: chosen by what they hold
+    // (input/float_grid.hpp).
+    double scale = 0;
+};
+
+// Errors name the file: missing, a folder, empty, of a kind that is not read, damaged.
+Result<std::unique_ptr<PointInput>> openInput(const std::string& path, const InputOptions& options = {});
+
+} // namespace stipple
