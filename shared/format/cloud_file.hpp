@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace stipple {
@@ -42,6 +43,25 @@ Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry
 Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
                                             std::size_t block, ByteSpan bytes);
 
+// The bytes of a node that some of its attributes need: the strata (positions and the colour of the picture,
+// which travel with them) and the further blocks that hold the attributes asked for.
+struct NodeBytes {
+    NodeEntry entry;
+    std::vector<int> attributes; // indices into metadata.schema.attributes, as asked
+    Bytes bytes;                 // of the blocks, in file order, without what lies between them
+};
+// Which blocks those are: indices into attributeBlocks(metadata), ascending.
+std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<const int> attributes);
+// All points of the node in progressive order, grid integers and one column per attribute asked for
+// (batch.columns[i] is NodeBytes::attributes[i]). Pure: any thread. Errors name the node.
+Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node);
+
+// What a walk over the hierarchy read of it, and what it left alone.
+struct HierarchyCounters {
+    std::uint64_t chunksRead = 0, bytesRead = 0;
+    std::uint64_t chunksSkipped = 0, bytesSkipped = 0; // directly below the nodes that were not wanted
+};
+
 // A whole file through a byte source, waiting for each read; for converters and tests.
 class CloudReader {
   public:
@@ -50,11 +70,21 @@ class CloudReader {
 
     virtual const FileHeader& header() const = 0;
     virtual const CloudMetadata& metadata() const = 0;
-    // Every node, chunk by chunk; stops at the first error, the visitor's own included.
-    virtual Status visitNodes(const std::function<Status(const NodeEntry&)>& visit) = 0;
+    // Nodes chunk by chunk; stops at the first error, the visitor's own included. `visit` answers whether
+    // anything below the node is wanted: where it is not, the hierarchy chunk below is not read. (Nodes below
+    // that lie in a chunk that was read are visited all the same; they cost nothing.)
+    virtual Result<HierarchyCounters>
+    visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit) = 0;
+    // Every node.
+    Status visitNodes(const std::function<Status(const NodeEntry&)>& visit);
+    // Reads what decodeNode() needs for some attributes, and no other byte of the node.
+    virtual Result<NodeBytes> fetchNode(const NodeEntry& entry, std::span<const int> attributes) = 0;
     // All points of a node, grid integers and every attribute of the schema. Errors name the file and, where
     // the bytes could be read, the node.
-    virtual Result<PointBatch> readNode(const NodeEntry& entry) = 0;
+    Result<PointBatch> readNode(const NodeEntry& entry);
+
+  protected:
+    virtual std::string sourceName() const = 0;
 };
 
 } // namespace stipple

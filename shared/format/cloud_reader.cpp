@@ -3,7 +3,9 @@
 #include "shared/format/cloud_file.hpp"
 #include "shared/format/picture_attributes.hpp"
 
+#include <algorithm>
 #include <deque>
+#include <numeric>
 
 namespace stipple {
 
@@ -28,42 +30,70 @@ class Reader final : public CloudReader {
         if (!metadata)
             return metadata.error().at(source_.name());
         metadata_ = std::move(*metadata);
-        blocks_ = attributeBlocks(metadata_);
         return {};
     }
 
     const FileHeader& header() const override { return header_; }
     const CloudMetadata& metadata() const override { return metadata_; }
 
-    Status visitNodes(const std::function<Status(const NodeEntry&)>& visit) override {
+    Result<HierarchyCounters>
+    visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit) override {
         // A chunk is deeper than the one that names it, so a file whose chunks name each other in a circle
         // ends at the deepest level; the limit is for one that repeats itself sideways.
         std::deque<Wanted> wanted{{header_.rootChunk, NodeKey{}, 0}};
-        std::uint64_t chunkBytes = 0;
+        HierarchyCounters counters;
         while (!wanted.empty()) {
             Wanted next = wanted.front();
             wanted.pop_front();
-            chunkBytes += next.chunk.size;
-            if (chunkBytes > header_.fileBytes)
+            ++counters.chunksRead;
+            counters.bytesRead += next.chunk.size;
+            if (counters.bytesRead > header_.fileBytes)
                 return Error{ErrorCode::corrupt, "the hierarchy chunks overlap", source_.name(), {}};
             STIPPLE_TRY(nodes, readChunk(next));
             for (const NodeEntry& node : nodes) {
-                STIPPLE_CHECK(visit(node));
-                if (node.childChunk.size > 0)
+                STIPPLE_TRY(below, visit(node));
+                if (node.childChunk.size == 0)
+                    continue;
+                if (below) {
                     wanted.push_back({node.childChunk, node.key, node.childMask});
+                } else {
+                    ++counters.chunksSkipped;
+                    counters.bytesSkipped += node.childChunk.size;
+                }
             }
         }
-        return {};
+        return counters;
     }
 
-    Result<PointBatch> readNode(const NodeEntry& entry) override {
-        ByteRange all{entry.offsetBytes, entry.sizeBytes()};
-        STIPPLE_TRY(bytes, readNow(source_, all));
-        auto points = decode(entry, bytes);
-        if (!points)
-            return points.error().at(source_.name());
-        return points;
+    Result<NodeBytes> fetchNode(const NodeEntry& entry, std::span<const int> attributes) override {
+        NodeBytes node{entry, {attributes.begin(), attributes.end()}, {}};
+        std::vector<ByteRange> ranges{entry.strataRange(strataCount)};
+        for (std::size_t block : blocksHolding(metadata_, attributes)) {
+            if (block >= entry.attributeBytes.size())
+                return Error{ErrorCode::invalidArgument,
+                             "the cloud has no such block",
+                             "node " + entry.key.text(),
+                             {}};
+            ByteRange range = entry.attributeRange(block);
+            if (range.offset == ranges.back().end())
+                ranges.back().size += range.size; // neighbours are read at once
+            else
+                ranges.push_back(range);
+        }
+        for (const ByteRange& range : ranges) {
+            if (range.size == 0)
+                continue;
+            STIPPLE_TRY(part, readNow(source_, range));
+            if (node.bytes.empty())
+                node.bytes = std::move(part);
+            else
+                node.bytes.insert(node.bytes.end(), part.begin(), part.end());
+        }
+        return node;
     }
+
+  protected:
+    std::string sourceName() const override { return source_.name(); }
 
   private:
     struct Wanted {
@@ -96,42 +126,93 @@ class Reader final : public CloudReader {
         return true;
     }
 
-    Result<PointBatch> decode(const NodeEntry& entry, ByteSpan bytes) {
-        auto partOf = [&](ByteRange range) {
-            auto from = std::min<std::uint64_t>(range.offset - entry.offsetBytes, bytes.size());
-            auto size = std::min<std::uint64_t>(range.size, bytes.size() - from);
-            return bytes.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(size));
-        };
-        STIPPLE_TRY(picture,
-                    decodePicture(metadata_, entry, strataCount, partOf(entry.strataRange(strataCount))));
-        PointBatch points;
-        Vec3i corner = entry.pointCount > 0 ? metadata_.rootCube.nodeMin(entry.key) : Vec3i{};
-        points.positions.reserve(picture.size());
-        for (const auto& p : picture.positions)
-            points.positions.push_back(corner + Vec3i{p.x, p.y, p.z});
-        points.columns.resize(metadata_.schema.attributes.size());
-        std::vector<int> colour = pictureAttributes(metadata_);
-        for (std::size_t c = 0; c < colour.size(); ++c) {
-            Bytes& column = points.columns[static_cast<std::size_t>(colour[c])];
+    ByteSource& source_;
+    FileHeader header_;
+    CloudMetadata metadata_;
+};
+
+// Where the columns of the attributes asked for come from, as NodeBytes::attributes lists them.
+std::vector<std::size_t> placesOf(const std::vector<int>& attributes, int wanted) {
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < attributes.size(); ++i)
+        if (attributes[i] == wanted)
+            places.push_back(i);
+    return places;
+}
+
+void takeColour(const CloudMetadata& metadata, const NodeBytes& node, const NodePicture& picture,
+                PointBatch& points) {
+    std::vector<int> colour = pictureAttributes(metadata);
+    for (std::size_t c = 0; c < colour.size(); ++c)
+        for (std::size_t place : placesOf(node.attributes, colour[c])) {
+            Bytes& column = points.columns[place];
             column.resize(2 * picture.size());
             for (std::size_t i = 0; i < picture.size(); ++i)
                 storeLe(column.data() + 2 * i, picture.colour[i * colour.size() + c]);
         }
-        for (std::size_t b = 0; b < blocks_.size(); ++b) {
-            STIPPLE_TRY(columns, decodeAttributes(metadata_, entry, b, partOf(entry.attributeRange(b))));
-            for (std::size_t i = 0; i < columns.size(); ++i)
-                points.columns[static_cast<std::size_t>(blocks_[b].attributes[i])] = std::move(columns[i]);
-        }
-        return points;
-    }
-
-    ByteSource& source_;
-    FileHeader header_;
-    CloudMetadata metadata_;
-    std::vector<AttributeBlock> blocks_;
-};
+}
 
 } // namespace
+
+std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<const int> attributes) {
+    std::vector<AttributeBlock> all = attributeBlocks(metadata);
+    std::vector<std::size_t> holding;
+    for (std::size_t b = 0; b < all.size(); ++b)
+        if (std::any_of(attributes.begin(), attributes.end(), [&](int attribute) {
+                const std::vector<int>& held = all[b].attributes;
+                return std::find(held.begin(), held.end(), attribute) != held.end();
+            }))
+            holding.push_back(b);
+    return holding;
+}
+
+Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node) {
+    const NodeEntry& entry = node.entry;
+    std::size_t at = 0; // a block that is cut short is the decoder's to report
+    auto next = [&](std::uint64_t size) {
+        auto take = static_cast<std::size_t>(std::min<std::uint64_t>(size, node.bytes.size() - at));
+        at += take;
+        return ByteSpan(node.bytes).subspan(at - take, take);
+    };
+    STIPPLE_TRY(picture,
+                decodePicture(metadata, entry, strataCount, next(entry.strataRange(strataCount).size)));
+    PointBatch points;
+    Vec3i corner = entry.pointCount > 0 ? metadata.rootCube.nodeMin(entry.key) : Vec3i{};
+    points.positions.reserve(picture.size());
+    for (const auto& p : picture.positions)
+        points.positions.push_back(corner + Vec3i{p.x, p.y, p.z});
+    points.columns.resize(node.attributes.size());
+    takeColour(metadata, node, picture, points);
+    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
+    for (std::size_t block : blocksHolding(metadata, node.attributes)) {
+        std::uint64_t size = block < entry.attributeBytes.size() ? entry.attributeBytes[block] : 0;
+        STIPPLE_TRY(columns, decodeAttributes(metadata, entry, block, next(size)));
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            std::vector<std::size_t> places = placesOf(node.attributes, blocks[block].attributes[i]);
+            for (std::size_t p = 0; p < places.size(); ++p)
+                points.columns[places[p]] = p + 1 < places.size() ? columns[i] : std::move(columns[i]);
+        }
+    }
+    return points;
+}
+
+Status CloudReader::visitNodes(const std::function<Status(const NodeEntry&)>& visit) {
+    auto visited = visitWanted([&](const NodeEntry& entry) -> Result<bool> {
+        STIPPLE_CHECK(visit(entry));
+        return true;
+    });
+    return visited ? Status() : Status(visited.error());
+}
+
+Result<PointBatch> CloudReader::readNode(const NodeEntry& entry) {
+    std::vector<int> all(metadata().schema.attributes.size());
+    std::iota(all.begin(), all.end(), 0);
+    STIPPLE_TRY(bytes, fetchNode(entry, all));
+    auto points = decodeNode(metadata(), bytes);
+    if (!points)
+        return points.error().at(sourceName());
+    return points;
+}
 
 Result<std::unique_ptr<CloudReader>> CloudReader::open(ByteSource& source) {
     auto reader = std::make_unique<Reader>(source);

@@ -109,3 +109,54 @@ TEST_CASE("a visitor stops the visit") {
     CHECK(status.error().code == ErrorCode::cancelled);
     CHECK(nodes == 2);
 }
+
+TEST_CASE("some attributes of a node are read without the bytes of the others") {
+    SampleFile file = sampleFile(1000);
+    MemorySource source(file.bytes);
+    auto reader = need(CloudReader::open(source));
+    const CloudMetadata& metadata = reader->metadata();
+    int last = static_cast<int>(metadata.schema.attributes.size()) - 1;
+    REQUIRE(last >= 3);
+    // Each alone, none, and some out of order and twice.
+    std::vector<std::vector<int>> asked{{}, {last, 0, last}};
+    for (int a = 0; a <= last; ++a)
+        asked.push_back({a});
+    need(reader->visitNodes([&](const NodeEntry& entry) -> Status {
+        PointBatch all = need(reader->readNode(entry));
+        for (const std::vector<int>& attributes : asked) {
+            NodeBytes bytes = need(reader->fetchNode(entry, attributes));
+            std::uint64_t expected = entry.strataRange(strataCount).size;
+            for (std::size_t block : blocksHolding(metadata, attributes))
+                expected += entry.attributeBytes[block];
+            CHECK(bytes.bytes.size() == expected);
+            PointBatch some = need(decodeNode(metadata, bytes));
+            CHECK(some.positions == all.positions);
+            REQUIRE(some.columns.size() == attributes.size());
+            for (std::size_t i = 0; i < attributes.size(); ++i)
+                CHECK(some.columns[i] == all.columns[static_cast<std::size_t>(attributes[i])]);
+        }
+        return {};
+    }));
+}
+
+TEST_CASE("hierarchy chunks below nodes that are not wanted stay unread") {
+    SampleFile file = sampleFile(20);
+    MemorySource source(file.bytes);
+    auto reader = need(CloudReader::open(source));
+    std::size_t nodes = 0;
+    auto count = [&](bool below) {
+        nodes = 0;
+        return need(reader->visitWanted([&](const NodeEntry&) -> Result<bool> {
+            ++nodes;
+            return below;
+        }));
+    };
+    HierarchyCounters all = count(true);
+    CHECK(all.chunksSkipped == 0);
+    CHECK(all.bytesRead == file.written.hierarchyBytes);
+    CHECK(nodes == file.written.nodes);
+    HierarchyCounters top = count(false);
+    CHECK(top.chunksRead == 1);
+    CHECK(top.chunksRead + top.chunksSkipped <= all.chunksRead);
+    CHECK(top.bytesRead + top.bytesSkipped <= all.bytesRead);
+}
