@@ -19,10 +19,11 @@ struct Kind {
     std::string_view name;
     Opener open; // null: known, but not read
 };
+constexpr std::string_view cloudName = "a Stipple cloud";
 constexpr std::array kinds = {
     Kind{"LASF", "a LAS file",
          [](const std::string& path, const InputOptions&) { return openLasInput(path); }},
-    Kind{"\x89STPL", "a Stipple cloud",
+    Kind{"\x89STPL", cloudName,
          [](const std::string& path, const InputOptions&) { return openCloudInput(path); }},
     Kind{"ASTM-E57", "an E57 file", nullptr},
     Kind{"ply\n", "a PLY file", nullptr},
@@ -32,27 +33,43 @@ constexpr std::array kinds = {
 };
 
 constexpr std::string_view readKinds = "give LAS, LAZ or Stipple files";
+
+Result<std::string> startOf(const std::string& path) {
+    STIPPLE_TRY(source, openFileSource(path));
+    STIPPLE_TRY(bytes, readNow(*source, {0, startBytes}));
+    return std::string(bytes.begin(), bytes.end());
+}
+
+// Null: of no known kind.
+const Kind* kindOf(std::string_view start) {
+    for (const Kind& kind : kinds)
+        if (start.starts_with(kind.start))
+            return &kind;
+    return nullptr;
+}
 } // namespace
+
+InputKind inputKindOf(const std::string& path) {
+    auto start = startOf(path);
+    const Kind* kind = start ? kindOf(*start) : nullptr;
+    if (!kind || !kind->open)
+        return InputKind::notRead;
+    return kind->name == cloudName ? InputKind::cloud : InputKind::scan;
+}
 
 Result<std::unique_ptr<PointInput>> openInput(const std::string& path, const InputOptions& options) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         return Error{ErrorCode::unsupported, "this is a folder", path, "give the files in it"};
-    std::string head;
-    {
-        STIPPLE_TRY(source, openFileSource(path));
-        STIPPLE_TRY(bytes, readNow(*source, {0, startBytes}));
-        head.assign(bytes.begin(), bytes.end());
-    }
-    if (head.empty())
+    STIPPLE_TRY(start, startOf(path));
+    if (start.empty())
         return Error{ErrorCode::truncated, "the file is empty", path, "was it copied completely?"};
-    for (const Kind& kind : kinds)
-        if (head.starts_with(kind.start)) {
-            if (!kind.open)
-                return Error{ErrorCode::unsupported, cat("this is ", kind.name, ", which is not read"), path,
-                             std::string(readKinds)};
-            return kind.open(path, options);
-        }
+    if (const Kind* kind = kindOf(start)) {
+        if (!kind->open)
+            return Error{ErrorCode::unsupported, cat("this is ", kind->name, ", which is not read"), path,
+                         std::string(readKinds)};
+        return kind->open(path, options);
+    }
     return Error{ErrorCode::unsupported, "the file is of no kind that is read", path, std::string(readKinds)};
 }
 

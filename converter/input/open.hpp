@@ -17,4 +17,12 @@ struct InputOptions {
 // Errors name the file: missing, a folder, empty, of a kind that is not read, damaged.
 Result<std::unique_ptr<PointInput>> openInput(const std::string& path, const InputOptions& options = {});
 
+// What openInput would take a file for, by its start alone; it may still be damaged.
+enum class InputKind : std::uint8_t {
+    scan,
+    cloud,   // a .stipple file
+    notRead, // of another kind, empty, or can't be opened
+};
+InputKind inputKindOf(const std::string& path);
+
 } // namespace stipple
