@@ -1,10 +1,12 @@
 // stipple convert INPUT... [-o OUT.stipple]
 #include "converter/build/convert.hpp"
+#include "converter/input/expand.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -59,17 +61,31 @@ void printText(const ConvertResult& result) {
                seconds.total() > 0 ? static_cast<double>(points) / seconds.total() / 1e6 : 0.0);
 }
 
+// A cloud of a folder is named after the folder, of other inputs after the first file.
+std::string chosenOutput(const ConvertArguments& arguments, const std::vector<std::string>& files) {
+    if (!arguments.output.empty())
+        return arguments.output;
+    std::error_code error;
+    std::filesystem::path first = std::filesystem::canonical(arguments.inputs[0], error);
+    return !error && std::filesystem::is_directory(first, error) ? defaultOutput({first.string()})
+                                                                 : defaultOutput(files);
+}
+
 int runConvert(ConvertArguments& arguments) {
+    auto inputs = expandInputs(arguments.inputs, arguments.output);
+    if (!inputs)
+        return cli::fail("convert", inputs.error());
     cli::Progress bar(arguments.json);
     arguments.options.stop = cli::stopOnInterrupt();
-    std::string output = arguments.output.empty() ? defaultOutput(arguments.inputs) : arguments.output;
-    auto result = convertFiles(arguments.inputs, output, arguments.options,
+    std::string output = chosenOutput(arguments, inputs->paths);
+    auto result = convertFiles(inputs->paths, output, arguments.options,
                                [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
                                    bar.update(phase, done, total);
                                });
     bar.finish();
     if (!result)
         return cli::fail("convert", result.error());
+    result->warnings.insert(result->warnings.begin(), inputs->warnings.begin(), inputs->warnings.end());
     if (arguments.json)
         cli::printJson(resultJson(*result));
     else
@@ -81,7 +97,10 @@ int runConvert(ConvertArguments& arguments) {
 void addConvertVerb(CLI::App& program, cli::Action& action) {
     auto arguments = std::make_shared<ConvertArguments>();
     CLI::App* verb = program.add_subcommand("convert", "Convert LAS scans to one .stipple file");
-    verb->add_option("INPUT", arguments->inputs, "LAS files; together they become one cloud")->required();
+    verb->add_option(
+            "INPUT", arguments->inputs,
+            "Scans, folders of them, or patterns (\"scans/**/*.las\"); together they become one cloud")
+        ->required();
     verb->add_option("-o,--output", arguments->output,
                      "The file to write (default: in the current folder, named after the first input)");
     verb->add_option("--name", arguments->options.name, "Name of the cloud (default: that of the output)");

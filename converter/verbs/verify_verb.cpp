@@ -1,5 +1,6 @@
 // stipple verify FILE [--against INPUT...]
 #include "converter/build/verify.hpp"
+#include "converter/input/expand.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/cli/progress.hpp"
@@ -81,14 +82,18 @@ void printText(const std::string& file, const VerifyReport& report) {
 }
 
 int runVerify(const VerifyArguments& arguments) {
+    auto inputs = expandInputs(arguments.inputs, arguments.file);
+    if (!inputs)
+        return cli::fail("verify", inputs.error());
     cli::Progress bar(arguments.json);
-    auto report = verifyFile(arguments.file, arguments.inputs, arguments.threads, cli::stopOnInterrupt(),
+    auto report = verifyFile(arguments.file, inputs->paths, arguments.threads, cli::stopOnInterrupt(),
                              [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
                                  bar.update(phase, done, total);
                              });
     bar.finish();
     if (!report)
         return cli::fail("verify", report.error());
+    report->warnings.insert(report->warnings.begin(), inputs->warnings.begin(), inputs->warnings.end());
     if (arguments.json)
         cli::printJson(reportJson(arguments.file, *report));
     else
@@ -102,7 +107,8 @@ void addVerifyVerb(CLI::App& program, cli::Action& action) {
     CLI::App* verb = program.add_subcommand("verify", "Check a .stipple file, alone or against its inputs");
     verb->add_option("FILE", arguments->file, "The .stipple file")->required();
     verb->add_option("--against", arguments->inputs,
-                     "LAS files: prove that the file holds exactly their points, every attribute equal");
+                     "Scans, folders or patterns, as given to convert: prove that the file holds exactly "
+                     "their points, every attribute equal");
     verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
         ->check(CLI::Range(1, 1024));
     verb->add_flag("--json", arguments->json, "Print the report as one JSON object; no progress");
