@@ -1,7 +1,7 @@
 // Phase 1: what the inputs are, from their headers, and what the cloud made of them will be.
 #pragma once
 
-#include "converter/build/common_grid.hpp"
+#include "converter/input/common_grid.hpp"
 #include "converter/input/open.hpp"
 #include "shared/base/result.hpp"
 #include "shared/format/cloud_metadata.hpp"

@@ -1,4 +1,4 @@
-#include "converter/build/common_grid.hpp"
+#include "converter/input/common_grid.hpp"
 
 #include <algorithm>
 #include <charconv>
