@@ -1,7 +1,9 @@
-// stipple export FILE -o OUT.las
-#include "converter/build/export_las.hpp"
+// stipple export FILE -o OUT
+#include "converter/export/export_file.hpp"
+#include "converter/export/filter_text.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
+#include "shared/base/text.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -12,45 +14,161 @@ namespace stipple {
 
 namespace {
 struct ExportArguments {
-    std::string input, output;
+    std::string input, output, format, box, polygon, classes;
+    std::vector<std::string> attributes;
+    bool attributesGiven = false;
+    double spacing = 0;
+    int threads = 0;
     bool force = false, json = false;
 };
 
+Error inOption(const char* option, const Error& error) {
+    return error.at(option);
+}
+
+Result<ExportOptions> optionsOf(const ExportArguments& arguments) {
+    ExportOptions options;
+    if (!arguments.format.empty()) {
+        options.format = exportFormatFromName(arguments.format);
+        if (!options.format)
+            return Error{ErrorCode::invalidArgument,
+                         cat("\"", arguments.format, "\" is no format that can be exported"), "--format",
+                         "choose las, laz, ply or csv"};
+    }
+    if (!arguments.box.empty()) {
+        auto box = boxFromText(arguments.box);
+        if (!box)
+            return inOption("--box", box.error());
+        options.filter.box = *box;
+    }
+    if (!arguments.classes.empty()) {
+        auto classes = rangesFromText(arguments.classes);
+        if (!classes)
+            return inOption("--class", classes.error());
+        options.filter.conditions.push_back({std::string(attribute_names::classification), *classes});
+    }
+    options.polygonFile = arguments.polygon;
+    options.filter.spacing = arguments.spacing;
+    if (arguments.attributesGiven)
+        options.attributes = arguments.attributes;
+    options.threads = arguments.threads;
+    options.force = arguments.force;
+    options.stop = cli::stopOnInterrupt();
+    return options;
+}
+
+cli::Json tallyJson(const NodeTally& tally) {
+    return {{"nodes", tally.nodes}, {"points", tally.points}, {"bytes", tally.bytes}};
+}
+
+cli::Json countersJson(const WalkCounters& counters) {
+    cli::Json json = {{"whole", tallyJson(counters.whole)},     {"tested", tallyJson(counters.tested)},
+                      {"outside", tallyJson(counters.outside)}, {"finer", tallyJson(counters.finer)},
+                      {"absent", tallyJson(counters.absent)},   {"bytesRead", counters.bytesRead}};
+    json["attributeBytesSkipped"] = counters.attributeBytesSkipped;
+    json["pointsDropped"] = {{"bySpacing", counters.dropped.bySpacing},
+                             {"byRegion", counters.dropped.byRegion},
+                             {"byAttribute", counters.dropped.byAttribute}};
+    json["hierarchy"] = {{"chunksRead", counters.hierarchy.chunksRead},
+                         {"bytesRead", counters.hierarchy.bytesRead},
+                         {"chunksSkipped", counters.hierarchy.chunksSkipped},
+                         {"bytesSkipped", counters.hierarchy.bytesSkipped}};
+    return json;
+}
+
+cli::Json resultJson(const ExportResult& result) {
+    cli::Json json = {{"output", result.output}, {"points", result.points}, {"format", result.format}};
+    json["bytes"] = result.bytes;
+    json["crs"] = cli::crsJson(result.metadata.crs);
+    json["grid"] = cli::gridJson(result.grid);
+    json["attributes"] = result.attributes;
+    json["read"] = countersJson(result.counters);
+    json["warnings"] = result.warnings;
+    return json;
+}
+
+// On standard error where the points themselves go to standard output.
+void printSummary(const ExportResult& result, std::FILE* to) {
+    const WalkCounters& counters = result.counters;
+    fmt::print(to, "{}: {} points of {}, {}; CRS: {}\n", result.output, result.points,
+               result.metadata.pointCount, result.format, cli::crsText(result.metadata.crs));
+    std::uint64_t skipped = counters.outside.nodes + counters.finer.nodes + counters.absent.nodes;
+    fmt::print(to, "read {} nodes ({} bytes), {} of them point by point; skipped {} nodes",
+               counters.whole.nodes + counters.tested.nodes, counters.bytesRead, counters.tested.nodes,
+               skipped);
+    if (counters.hierarchy.chunksSkipped > 0)
+        fmt::print(to, " and {} chunks of the hierarchy", counters.hierarchy.chunksSkipped);
+    fmt::print(to, "\n");
+}
+
 int runExport(const ExportArguments& arguments) {
+    auto options = optionsOf(arguments);
+    if (!options)
+        return cli::fail("export", options.error());
     cli::Progress bar(arguments.json);
-    auto result = exportLas(arguments.input, arguments.output, arguments.force, cli::stopOnInterrupt(),
-                            [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
-                                bar.update(phase, done, total);
-                            });
+    auto result = exportFile(arguments.input, arguments.output, *options,
+                             [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
+                                 bar.update(phase, done, total);
+                             });
     bar.finish();
     if (!result)
         return cli::fail("export", result.error());
-    const las::Header& header = result->header;
-    std::string format = fmt::format("LAS {}.{}, point format {}", header.versionMajor, header.versionMinor,
-                                     header.pointFormat);
+    bool toStandardOutput = arguments.output == "-";
     if (arguments.json) {
-        cli::Json json = {{"output", result->output}, {"points", result->points}, {"format", format}};
-        json["grid"] = cli::gridJson(header.grid);
-        json["bounds"] = cli::boxJson(header.bounds);
-        json["warnings"] = result->warnings;
-        cli::printJson(json);
+        std::string text = resultJson(*result).dump(2, ' ', false, cli::Json::error_handler_t::replace);
+        fmt::print(toStandardOutput ? stderr : stdout, "{}\n", text);
         return cli::success;
     }
     for (const std::string& warning : result->warnings)
         fmt::print(stderr, "warning: {}\n", warning);
-    fmt::print("{}: {} points, {}\n", result->output, result->points, format);
+    printSummary(*result, toStandardOutput ? stderr : stdout);
     return cli::success;
 }
 } // namespace
 
 void addExportVerb(CLI::App& program, cli::Action& action) {
     auto arguments = std::make_shared<ExportArguments>();
-    CLI::App* verb = program.add_subcommand("export", "Write the points of a .stipple file to a LAS file");
+    CLI::App* verb = program.add_subcommand(
+        "export", "Write the points of a .stipple file, or some of them, as LAS, LAZ, PLY or CSV");
     verb->add_option("FILE", arguments->input, "The .stipple file")->required();
-    verb->add_option("-o,--output", arguments->output, "The LAS file to write")->required();
-    verb->add_flag("--force", arguments->force, "Replace an existing output even if it is no LAS file");
+    verb->add_option("-o,--output", arguments->output,
+                     "The file to write; - is standard output (PLY and CSV, with --format)")
+        ->required();
+    verb->add_option("--format", arguments->format,
+                     "las, laz, ply or csv (default: by the output's extension)");
+    verb->add_option("--box", arguments->box,
+                     "Points in a box: xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax, in the cloud's "
+                     "coordinates; its sides belong to it");
+    verb->add_option(
+        "--polygon", arguments->polygon,
+        "Points in the polygons of a GeoJSON file, in the cloud's coordinates (not longitude and "
+        "latitude); edges, also those of holes, belong to them");
+    verb->add_option(
+            "--spacing", arguments->spacing,
+            "A level of detail: points of the levels whose minimum distance is at least this, in the "
+            "cloud's units. Leaves among them, which hold the rest of their points at any distance, "
+            "are thinned to it, and so is the root if its distance is smaller: no two points of a node are "
+            "nearer. "
+            "Other options choose among these points")
+        ->check(CLI::PositiveNumber);
+    verb->add_option("--class", arguments->classes, "Points of these classes: 2,6 or 3-5, or both");
+    CLI::Option* attributes =
+        verb->add_option("--attributes", arguments->attributes,
+                         "Write these attributes only, names joined by commas (none: \"\")")
+            ->delimiter('\n')
+            ->allow_extra_args(false);
+    verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
+        ->check(CLI::Range(1, 1024));
+    verb->add_flag("--force", arguments->force, "Replace an existing output even if it is of another kind");
     verb->add_flag("--json", arguments->json, "Print the result as one JSON object; no progress");
-    verb->callback([arguments, &action] { action = [arguments] { return runExport(*arguments); }; });
+    verb->footer(
+        "CSV has exact decimals: coordinates as many places as the grid needs, scaled attributes as the\n"
+        "values they mean, an empty field for no value. PLY is binary: x, y, z in double, attributes in\n"
+        "their own types, scaled ones as double. LAS keeps the integers.");
+    verb->callback([arguments, attributes, &action] {
+        arguments->attributesGiven = attributes->count() > 0;
+        action = [arguments] { return runExport(*arguments); };
+    });
 }
 
 } // namespace stipple

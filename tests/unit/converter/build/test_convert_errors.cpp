@@ -1,5 +1,5 @@
-#include "converter/build/export_las.hpp"
 #include "converter/build/verify.hpp"
+#include "converter/export/export_file.hpp"
 #include "tests/unit/converter/build/test_scan.hpp"
 
 using namespace stipple;
@@ -155,11 +155,12 @@ TEST_CASE("verify and export refuse what is no cloud", "[convert]") {
     auto verified = verifyFile(folder / "in.las", {}, 1, nullptr, noProgress);
     REQUIRE_FALSE(verified.ok());
     CHECK(verified.error().sentence().find("in.las") != std::string::npos);
-    auto exported = exportLas(folder / "in.las", folder / "out.las", false, nullptr, noProgress);
+    auto exported = exportFile(folder / "in.las", folder / "out.las", {}, noProgress);
     REQUIRE_FALSE(exported.ok());
     CHECK(folder.files() == 1);
     convertOrFail({folder / "in.las"}, folder / "c.stipple");
-    auto same = exportLas(folder / "c.stipple", folder / "c.stipple", true, nullptr, noProgress);
+    auto same = exportFile(folder / "c.stipple", folder / "c.stipple",
+                           ExportOptions{.format = ExportFormat::las, .force = true}, noProgress);
     REQUIRE_FALSE(same.ok());
     CHECK(same.error().code == ErrorCode::invalidArgument);
 }

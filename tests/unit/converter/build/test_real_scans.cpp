@@ -1,5 +1,5 @@
-#include "converter/build/export_las.hpp"
 #include "converter/build/verify.hpp"
+#include "converter/export/export_file.hpp"
 #include "tests/support/data.hpp"
 #include "tests/unit/converter/build/test_scan.hpp"
 
@@ -18,7 +18,7 @@ void roundTrip(const std::string& scan) {
     REQUIRE(report.ok());
     INFO((report->faults.empty() ? "" : report->faults[0]));
     CHECK(report->passed());
-    auto exported = exportLas(folder / "c.stipple", folder / "out.las", false, nullptr, noProgress);
+    auto exported = exportFile(folder / "c.stipple", folder / "out.las", {}, noProgress);
     if (!exported)
         FAIL(exported.error().sentence());
     auto again = verifyFile(folder / "c.stipple", {folder / "out.las"}, 2, nullptr, noProgress);

@@ -1,7 +1,8 @@
 #include "converter/build/compare.hpp"
-#include "converter/build/export_las.hpp"
 #include "converter/build/read_points.hpp"
 #include "converter/build/verify.hpp"
+#include "converter/export/export_file.hpp"
+#include "shared/base/text.hpp"
 #include "tests/unit/converter/build/test_scan.hpp"
 
 using namespace stipple;
@@ -46,10 +47,10 @@ TEST_CASE("each point format goes through convert, verify and export with nothin
         REQUIRE(report->comparison);
         CHECK(report->comparison->equalPoints == 5000);
 
-        auto exported = exportLas(folder / "c.stipple", folder / "out.las", false, nullptr, noProgress);
+        auto exported = exportFile(folder / "c.stipple", folder / "out.las", {}, noProgress);
         REQUIRE(exported.ok());
-        CHECK(exported->header.pointFormat == format);
-        CHECK(exported->header.grid == scan.grid);
+        CHECK(exported->format.ends_with(cat(" ", format)));
+        CHECK(exported->grid == scan.grid);
         Comparison comparison = compareLas(folder / "in.las", folder / "out.las");
         CHECK(comparison.same());
         CHECK(comparison.equalPoints == 5000);
@@ -81,7 +82,7 @@ TEST_CASE("extra bytes of every type go through with their names and values", "[
     int found = result.metadata.schema.find("height");
     REQUIRE(found >= 0);
     CHECK(result.metadata.schema.attributes[static_cast<std::size_t>(found)] == height);
-    REQUIRE(exportLas(folder / "c.stipple", folder / "out.las", false, nullptr, noProgress).ok());
+    REQUIRE(exportFile(folder / "c.stipple", folder / "out.las", {}, noProgress).ok());
     CHECK(compareLas(folder / "in.las", folder / "out.las").same());
 }
 
@@ -100,10 +101,10 @@ TEST_CASE("integers beyond 32 bits are exported from another offset", "[roundtri
     writeScan(a, folder / "a.las");
     writeScan(b, folder / "b.las");
     convertOrFail({folder / "a.las", folder / "b.las"}, folder / "c.stipple");
-    auto exported = exportLas(folder / "c.stipple", folder / "out.las", false, nullptr, noProgress);
+    auto exported = exportFile(folder / "c.stipple", folder / "out.las", {}, noProgress);
     REQUIRE(exported.ok());
-    CHECK(exported->header.grid.offset.x != 0);
-    CHECK(exported->header.grid.scale.x == 0.001);
+    CHECK(exported->grid.offset.x != 0);
+    CHECK(exported->grid.scale.x == 0.001);
     auto report = verifyFile(folder / "c.stipple", {folder / "out.las"}, 1, nullptr, noProgress);
     REQUIRE(report.ok());
     CHECK(report->passed());
@@ -116,7 +117,7 @@ TEST_CASE("a cloud too wide for LAS is not exported, and leaves no file", "[roun
     writeScan(a, folder / "a.las");
     writeScan(b, folder / "b.las");
     convertOrFail({folder / "a.las", folder / "b.las"}, folder / "c.stipple");
-    auto exported = exportLas(folder / "c.stipple", folder / "out.las", false, nullptr, noProgress);
+    auto exported = exportFile(folder / "c.stipple", folder / "out.las", {}, noProgress);
     REQUIRE_FALSE(exported.ok());
     CHECK(exported.error().code == ErrorCode::outOfRange);
     CHECK(folder.files() == 3);

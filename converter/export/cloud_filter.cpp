@@ -1,0 +1,274 @@
+#include "converter/export/cloud_filter.hpp"
+
+#include "converter/build/spacing.hpp"
+#include "converter/export/minimum_distance.hpp"
+#include "shared/base/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace stipple {
+
+namespace {
+
+Error invalid(std::string what, std::string advice = "") {
+    return {ErrorCode::invalidArgument, std::move(what), "", std::move(advice)};
+}
+
+double worldOf(const Grid& grid, int axis, std::int64_t step) {
+    return grid.toWorld({step, step, step})[axis];
+}
+
+// The least step in [low, high + 1] whose world coordinate is at least `limit` (or, `above`, larger).
+std::int64_t firstStep(const Grid& grid, int axis, std::int64_t low, std::int64_t high, double limit,
+                       bool above) {
+    std::int64_t end = high + 1;
+    while (low < end) {
+        std::int64_t middle = low + (end - low) / 2;
+        double world = worldOf(grid, axis, middle);
+        if (above ? world > limit : world >= limit)
+            end = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+BoxI intersection(const BoxI& a, const BoxI& b) {
+    BoxI both;
+    for (int axis = 0; axis < 3; ++axis) {
+        both.min[axis] = std::max(a.min[axis], b.min[axis]);
+        both.max[axis] = std::min(a.max[axis], b.max[axis]);
+    }
+    return both.empty() ? BoxI{} : both;
+}
+
+// The steps of `steps` whose world positions lie in `box`.
+BoxI stepsIn(const Grid& grid, const BoxI& steps, const BoxD& box) {
+    BoxI in;
+    for (int axis = 0; axis < 3; ++axis) {
+        in.min[axis] = firstStep(grid, axis, steps.min[axis], steps.max[axis], box.min[axis], false);
+        in.max[axis] = firstStep(grid, axis, steps.min[axis], steps.max[axis], box.max[axis], true) - 1;
+    }
+    return in.empty() ? BoxI{} : in;
+}
+
+bool contains(const BoxI& outer, const BoxI& inner) {
+    return outer.contains(inner.min) && outer.contains(inner.max);
+}
+
+bool inRanges(const std::vector<ValueRange>& ranges, double value) {
+    return std::any_of(ranges.begin(), ranges.end(),
+                       [&](const ValueRange& r) { return value >= r.min && value <= r.max; });
+}
+
+template <class T>
+void dropOutside(std::vector<std::uint32_t>& rows, const Bytes& column,
+                 const std::vector<ValueRange>& ranges) {
+    std::erase_if(rows, [&](std::uint32_t row) {
+        return !inRanges(ranges, static_cast<double>(loadLe<T>(column.data() + row * sizeof(T))));
+    });
+}
+
+void keepInRanges(std::vector<std::uint32_t>& rows, AttributeType type, const Bytes& column,
+                  const std::vector<ValueRange>& ranges) {
+    switch (type) {
+    case AttributeType::u8:
+        return dropOutside<std::uint8_t>(rows, column, ranges);
+    case AttributeType::i8:
+        return dropOutside<std::int8_t>(rows, column, ranges);
+    case AttributeType::u16:
+        return dropOutside<std::uint16_t>(rows, column, ranges);
+    case AttributeType::i16:
+        return dropOutside<std::int16_t>(rows, column, ranges);
+    case AttributeType::u32:
+        return dropOutside<std::uint32_t>(rows, column, ranges);
+    case AttributeType::i32:
+        return dropOutside<std::int32_t>(rows, column, ranges);
+    case AttributeType::u64:
+        return dropOutside<std::uint64_t>(rows, column, ranges);
+    case AttributeType::i64:
+        return dropOutside<std::int64_t>(rows, column, ranges);
+    case AttributeType::f32:
+        return dropOutside<float>(rows, column, ranges);
+    case AttributeType::f64:
+        return dropOutside<double>(rows, column, ranges);
+    }
+}
+
+std::string lowerCase(std::string text) {
+    for (char& c : text)
+        c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return text;
+}
+
+} // namespace
+
+std::string attributeNames(const Schema& schema) {
+    std::string names;
+    for (const Attribute& attribute : schema.attributes)
+        names += (names.empty() ? "" : ", ") + attribute.name;
+    return names;
+}
+
+Result<int> findAttribute(const Schema& schema, const std::string& name) {
+    if (int exact = schema.find(name); exact >= 0)
+        return exact;
+    int found = -1, matches = 0;
+    for (std::size_t a = 0; a < schema.attributes.size(); ++a)
+        if (lowerCase(schema.attributes[a].name) == lowerCase(name)) {
+            found = static_cast<int>(a);
+            ++matches;
+        }
+    if (matches == 1)
+        return found;
+    return invalid(cat("the cloud has no attribute \"", name, "\""),
+                   schema.attributes.empty() ? "it has positions only" : "it has " + attributeNames(schema));
+}
+
+Result<CloudFilter> CloudFilter::make(const CloudMetadata& metadata, const PointFilter& filter) {
+    CloudFilter made(metadata);
+    made.filter_ = filter;
+    STIPPLE_CHECK(made.limitRegion());
+    STIPPLE_CHECK(made.limitLevels());
+    STIPPLE_CHECK(made.limitAttributes());
+    return made;
+}
+
+Status CloudFilter::limitRegion() {
+    const BoxI& bounds = metadata_->bounds;
+    reach_ = bounds;
+    if (filter_.box) {
+        for (int axis = 0; axis < 3; ++axis) // also where a side is NaN
+            if (!(filter_.box->min[axis] <= filter_.box->max[axis]))
+                return invalid(cat("the box is empty: its ", "xyz"[axis], " goes from ",
+                                   filter_.box->min[axis], " to ", filter_.box->max[axis]),
+                               "give the smaller corner first");
+        if (!reach_.empty())
+            reach_ = stepsIn(metadata_->grid, reach_, *filter_.box);
+    }
+    if (filter_.gridBox)
+        reach_ = intersection(reach_, *filter_.gridBox);
+    restricts_ = reach_ != bounds;
+    if (filter_.region && !reach_.empty()) {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        BoxD around = filter_.region->bounds();
+        around.min.z = -infinity;
+        around.max.z = infinity;
+        reach_ = around.min.x <= around.max.x ? stepsIn(metadata_->grid, reach_, around) : BoxI{};
+    }
+    return {};
+}
+
+Status CloudFilter::limitLevels() {
+    if (filter_.spacing == 0)
+        return {};
+    if (!(filter_.spacing > 0) || !std::isfinite(filter_.spacing))
+        return invalid(cat("the spacing ", filter_.spacing, " is no distance"), "give a number above 0");
+    deepestLevel_ = 0;
+    while (deepestLevel_ < maxLevel &&
+           std::ldexp(metadata_->spacing, -(deepestLevel_ + 1)) >= filter_.spacing)
+        ++deepestLevel_;
+    restricts_ = true; // leaves are thinned
+    return {};
+}
+
+Status CloudFilter::limitAttributes() {
+    for (AttributeCondition& condition : filter_.conditions) {
+        STIPPLE_TRY(index, findAttribute(metadata_->schema, condition.attribute));
+        const auto place = static_cast<std::size_t>(index);
+        if (metadata_->schema.attributes[place].components != 1)
+            return invalid(
+                cat("\"", condition.attribute, "\" has several values a point, none to filter by"));
+        conditionAttributes_.push_back(index);
+        restricts_ = true;
+        if (place >= metadata_->statistics.size())
+            continue;
+        // A histogram lists every value there is.
+        const auto& histogram = metadata_->statistics[place].histogram;
+        bool found = histogram.empty();
+        for (const auto& [value, count] : histogram)
+            found = found || inRanges(condition.ranges, static_cast<double>(value));
+        noneHasValues_ = noneHasValues_ || !found;
+    }
+    return {};
+}
+
+BoxI CloudFilter::cubeOf(const NodeKey& key) const {
+    Vec3i corner = metadata_->rootCube.nodeMin(key);
+    std::int64_t last = (std::int64_t{1} << metadata_->rootCube.nodeBits(key.level)) - 1;
+    return intersection({corner, corner + Vec3i{last, last, last}}, metadata_->bounds);
+}
+
+Overlap CloudFilter::overlapOf(const NodeEntry& entry) const {
+    BoxI cube = cubeOf(entry.key);
+    BoxI common = intersection(cube, reach_);
+    if (common.empty())
+        return Overlap::none;
+    Overlap byBox = contains(reach_, cube) ? Overlap::whole : Overlap::partial;
+    if (!filter_.region)
+        return byBox;
+    Overlap byRegion =
+        filter_.region->overlapOf({metadata_->grid.toWorld(common.min), metadata_->grid.toWorld(common.max)});
+    return byRegion == Overlap::whole ? byBox : byRegion;
+}
+
+bool CloudFilter::thins(const NodeEntry& entry) const {
+    if (filter_.spacing == 0)
+        return false;
+    return entry.childMask == 0 || std::ldexp(metadata_->spacing, -entry.key.level) < filter_.spacing;
+}
+
+CloudFilter::Verdict CloudFilter::verdictOn(const NodeEntry& entry) const {
+    if (wantsEverything())
+        return Verdict::whole;
+    if (noneHasValues_)
+        return Verdict::absent;
+    if (entry.key.level > deepestLevel_)
+        return Verdict::finer;
+    Overlap overlap = overlapOf(entry);
+    if (overlap == Overlap::none)
+        return Verdict::outside;
+    bool needsTests = overlap == Overlap::partial || !filter_.conditions.empty() || thins(entry);
+    return needsTests ? Verdict::tested : Verdict::whole;
+}
+
+bool CloudFilter::wantsBelow(const NodeEntry& entry) const {
+    if (wantsEverything())
+        return true;
+    return !noneHasValues_ && entry.key.level < deepestLevel_ && overlapOf(entry) != Overlap::none;
+}
+
+std::vector<std::uint32_t> CloudFilter::select(const NodeEntry& entry, std::span<const Vec3i> positions,
+                                               std::span<const Bytes* const> tested, Dropped& dropped) const {
+    std::vector<std::uint32_t> rows;
+    if (thins(entry)) {
+        rows = thinned(positions, metadata_->rootCube.nodeMin(entry.key), metric_, filter_.spacing);
+    } else {
+        rows.resize(positions.size());
+        std::iota(rows.begin(), rows.end(), 0u);
+    }
+    dropped.bySpacing += positions.size() - rows.size();
+
+    std::size_t before = rows.size();
+    if (overlapOf(entry) != Overlap::whole) {
+        std::erase_if(rows, [&](std::uint32_t row) { return !reach_.contains(positions[row]); });
+        if (filter_.region)
+            std::erase_if(rows, [&](std::uint32_t row) {
+                Vec3d world = metadata_->grid.toWorld(positions[row]);
+                return !filter_.region->contains({world.x, world.y});
+            });
+    }
+    dropped.byRegion += before - rows.size();
+
+    before = rows.size();
+    for (std::size_t i = 0; i < conditionAttributes_.size(); ++i) {
+        auto a = static_cast<std::size_t>(conditionAttributes_[i]);
+        keepInRanges(rows, metadata_->schema.attributes[a].type, *tested[i], filter_.conditions[i].ranges);
+    }
+    dropped.byAttribute += before - rows.size();
+    return rows;
+}
+
+} // namespace stipple

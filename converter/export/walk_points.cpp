@@ -1,0 +1,259 @@
+#include "converter/export/walk_points.hpp"
+
+#include "converter/export/ordered_work.hpp"
+#include "shared/base/text.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <new>
+
+namespace stipple {
+
+namespace {
+
+constexpr std::size_t nodesPerThread = 4;
+constexpr std::uint64_t maxPointsWaiting = 2'000'000;
+constexpr std::size_t maxPointsEncoded = 1 << 18; // at once: text takes many times what points do
+
+template <std::size_t size>
+void gather(const Bytes& from, const std::vector<std::uint32_t>& rows, Bytes& to) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        std::memcpy(to.data() + i * size, from.data() + rows[i] * size, size);
+}
+
+Bytes rowsOf(const Bytes& column, const std::vector<std::uint32_t>& rows, std::size_t size) {
+    Bytes picked(rows.size() * size);
+    switch (size) { // a constant width lets the compiler turn the copy into one move
+    case 1:
+        gather<1>(column, rows, picked);
+        break;
+    case 2:
+        gather<2>(column, rows, picked);
+        break;
+    case 4:
+        gather<4>(column, rows, picked);
+        break;
+    case 8:
+        gather<8>(column, rows, picked);
+        break;
+    default:
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            std::memcpy(picked.data() + i * size, column.data() + rows[i] * size, size);
+    }
+    return picked;
+}
+
+// A node's points, chosen; encoded unless there are too many for one piece.
+struct Chosen {
+    std::uint64_t nodePoints = 0;
+    CloudFilter::Dropped dropped;
+    std::uint64_t taken = 0;
+    PointBatch batch;
+    std::optional<EncodedPoints> encoded;
+};
+
+class Walk {
+  public:
+    Walk(CloudReader& reader, const std::string& name, const CloudFilter& filter,
+         const std::vector<int>& attributes, PointSink* sink, const WalkOptions& options)
+        : reader_(reader), name_(name), filter_(filter), sinkAttributes_(attributes), sink_(sink),
+          options_(options), read_(attributes), work_(options.threads) {
+        for (int attribute : filter.testedAttributes()) {
+            auto place = std::find(read_.begin(), read_.end(), attribute);
+            testedPlaces_.push_back(static_cast<std::size_t>(place - read_.begin()));
+            if (place == read_.end())
+                read_.push_back(attribute);
+        }
+        for (int attribute : attributes)
+            sizes_.push_back(schema().attributes[static_cast<std::size_t>(attribute)].size());
+    }
+
+    Result<WalkCounters> run() {
+        auto visited = reader_.visitWanted([&](const NodeEntry& entry) -> Result<bool> {
+            if (options_.stop && *options_.stop)
+                return Error{ErrorCode::cancelled, "interrupted", "", ""};
+            STIPPLE_CHECK(visit(entry));
+            return filter_.wantsBelow(entry);
+        });
+        if (!visited)
+            return visited.error();
+        while (work_.waiting() > 0)
+            STIPPLE_CHECK(takeOne());
+        counters_.hierarchy = *visited;
+        return counters_;
+    }
+
+  private:
+    const Schema& schema() const { return reader_.metadata().schema; }
+
+    Status visit(const NodeEntry& entry) {
+        using Verdict = CloudFilter::Verdict;
+        Verdict verdict = filter_.verdictOn(entry);
+        switch (verdict) {
+        case Verdict::outside:
+            counters_.outside.add(entry);
+            return {};
+        case Verdict::finer:
+            counters_.finer.add(entry);
+            return {};
+        case Verdict::absent:
+            counters_.absent.add(entry);
+            return {};
+        case Verdict::whole:
+            counters_.whole.add(entry);
+            if (!sink_) {
+                counters_.pointsTaken += entry.pointCount;
+                return {};
+            }
+            break;
+        case Verdict::tested:
+            counters_.tested.add(entry);
+            break;
+        }
+        if (entry.pointCount == 0)
+            return {};
+        return read(entry, verdict == Verdict::tested ? read_ : sinkAttributes_, verdict);
+    }
+
+    Status read(const NodeEntry& entry, const std::vector<int>& attributes, CloudFilter::Verdict verdict) {
+        while (work_.waiting() > 0 &&
+               (work_.waiting() >= nodesPerThread * static_cast<std::size_t>(std::max(1, options_.threads)) ||
+                pointsWaiting_ + entry.pointCount > maxPointsWaiting))
+            STIPPLE_CHECK(takeOne());
+        STIPPLE_TRY(fetched, reader_.fetchNode(entry, attributes));
+        counters_.bytesRead += fetched.bytes.size();
+        counters_.attributeBytesSkipped += entry.sizeBytes() - fetched.bytes.size();
+        pointsWaiting_ += entry.pointCount;
+        auto node = std::make_shared<NodeBytes>(std::move(fetched));
+        bool tested = verdict == CloudFilter::Verdict::tested;
+        work_.submit([this, node, tested]() -> Result<Chosen> {
+            try {
+                return choose(*node, tested);
+            } catch (const std::bad_alloc&) {
+                return Error{ErrorCode::limitExceeded, "there is not enough memory to decode it",
+                             cat(name_, ", node ", node->entry.key.text()), "use fewer threads"};
+            }
+        });
+        return {};
+    }
+
+    // On any thread.
+    Result<Chosen> choose(const NodeBytes& node, bool tested) const {
+        auto decoded = decodeNode(reader_.metadata(), node);
+        if (!decoded)
+            return decoded.error().at(name_);
+        PointBatch& batch = *decoded;
+        if (batch.size() != node.entry.pointCount)
+            return Error{ErrorCode::corrupt,
+                         cat("node ", node.entry.key.text(), " has ", batch.size(), " points instead of ",
+                             node.entry.pointCount),
+                         name_, ""};
+        Chosen chosen;
+        chosen.nodePoints = batch.size();
+        if (tested)
+            batch = test(node.entry, std::move(batch), chosen.dropped);
+        chosen.taken = batch.size();
+        if (!sink_)
+            return chosen;
+        if (batch.size() > maxPointsEncoded) {
+            chosen.batch = std::move(batch);
+            return chosen;
+        }
+        STIPPLE_TRY(encoded, sink_->encode(std::move(batch)));
+        chosen.encoded = std::move(encoded);
+        return chosen;
+    }
+
+    PointBatch test(const NodeEntry& entry, PointBatch batch, CloudFilter::Dropped& dropped) const {
+        std::vector<const Bytes*> columns;
+        for (std::size_t place : testedPlaces_)
+            columns.push_back(&batch.columns[place]);
+        std::vector<std::uint32_t> rows = filter_.select(entry, batch.positions, columns, dropped);
+        if (rows.size() == batch.size()) {
+            batch.columns.resize(sinkAttributes_.size());
+            return batch;
+        }
+        return pick(batch, rows);
+    }
+
+    PointBatch pick(const PointBatch& batch, const std::vector<std::uint32_t>& rows) const {
+        PointBatch picked;
+        picked.positions.reserve(rows.size());
+        for (std::uint32_t row : rows)
+            picked.positions.push_back(batch.positions[row]);
+        for (std::size_t i = 0; i < sinkAttributes_.size(); ++i)
+            picked.columns.push_back(rowsOf(batch.columns[i], rows, sizes_[i]));
+        return picked;
+    }
+
+    Status takeOne() {
+        auto result = work_.take();
+        if (!result)
+            return result.error();
+        Chosen& chosen = *result;
+        pointsWaiting_ -= chosen.nodePoints;
+        pointsDone_ += chosen.nodePoints;
+        counters_.pointsTaken += chosen.taken;
+        counters_.dropped.bySpacing += chosen.dropped.bySpacing;
+        counters_.dropped.byRegion += chosen.dropped.byRegion;
+        counters_.dropped.byAttribute += chosen.dropped.byAttribute;
+        if (chosen.encoded)
+            STIPPLE_CHECK(sink_->write(std::move(*chosen.encoded)));
+        else if (sink_)
+            STIPPLE_CHECK(writeInParts(chosen.batch));
+        if (options_.progress)
+            options_.progress(pointsDone_);
+        return {};
+    }
+
+    Status writeInParts(const PointBatch& batch) {
+        for (std::size_t first = 0; first < batch.size(); first += maxPointsEncoded) {
+            if (options_.stop && *options_.stop)
+                return Error{ErrorCode::cancelled, "interrupted", "", ""};
+            std::size_t count = std::min(maxPointsEncoded, batch.size() - first);
+            PointBatch part;
+            part.positions.assign(batch.positions.begin() + static_cast<std::ptrdiff_t>(first),
+                                  batch.positions.begin() + static_cast<std::ptrdiff_t>(first + count));
+            for (std::size_t i = 0; i < sinkAttributes_.size(); ++i) {
+                const std::uint8_t* from = batch.columns[i].data() + first * sizes_[i];
+                part.columns.emplace_back(from, from + count * sizes_[i]);
+            }
+            STIPPLE_TRY(encoded, sink_->encode(std::move(part)));
+            STIPPLE_CHECK(sink_->write(std::move(encoded)));
+        }
+        return {};
+    }
+
+    CloudReader& reader_;
+    const std::string& name_;
+    const CloudFilter& filter_;
+    const std::vector<int>& sinkAttributes_;
+    PointSink* sink_; // null: points are counted only
+    const WalkOptions& options_;
+    std::vector<int> read_;                 // the sink's attributes, then those only tests need
+    std::vector<std::size_t> testedPlaces_; // of the filter's attributes among them
+    std::vector<std::size_t> sizes_;        // bytes of the sink's attributes
+    WalkCounters counters_;
+    std::uint64_t pointsWaiting_ = 0, pointsDone_ = 0;
+    OrderedWork<Result<Chosen>> work_; // last: its threads end before what they use
+};
+
+} // namespace
+
+Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
+                                const std::vector<int>& attributes, PointSink& sink,
+                                const WalkOptions& options) {
+    return Walk(reader, name, filter, attributes, &sink, options).run();
+}
+
+Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
+                                  const WalkOptions& options) {
+    if (filter.wantsEverything())
+        return reader.metadata().pointCount;
+    auto counted = Walk(reader, name, filter, {}, nullptr, options).run();
+    if (!counted)
+        return counted.error();
+    return counted->pointsTaken;
+}
+
+} // namespace stipple

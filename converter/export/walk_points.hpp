@@ -1,0 +1,61 @@
+// The way from a cloud to a sink: reads the nodes a filter wants and no others, of those the blocks that are
+// needed and no others, and hands the points on in the order of the file's hierarchy.
+//
+// Reading and writing are done by the calling thread; decoding, testing and encoding by all. Memory: what the
+// nodes in work take, at most 4 for each thread and, unless one node holds more, about 2 million points.
+#pragma once
+
+#include "converter/export/cloud_filter.hpp"
+#include "converter/export/point_sink.hpp"
+#include "shared/format/cloud_file.hpp"
+
+#include <atomic>
+#include <functional>
+
+namespace stipple {
+
+// Nodes, with what they hold.
+struct NodeTally {
+    std::uint64_t nodes = 0, points = 0, bytes = 0;
+
+    void add(const NodeEntry& entry) {
+        ++nodes;
+        points += entry.pointCount;
+        bytes += entry.sizeBytes();
+    }
+    friend bool operator==(const NodeTally&, const NodeTally&) = default;
+};
+
+// What was done and what was not needed. Nodes whose hierarchy chunk was not read are in no tally but
+// in hierarchy.chunksSkipped.
+struct WalkCounters {
+    NodeTally whole;              // read, every point taken without a test
+    NodeTally tested;             // read, point by point
+    NodeTally outside;            // not read: no point of it in the region
+    NodeTally finer;              // not read: finer than the spacing asked for
+    NodeTally absent;             // not read: no point of the cloud has the attribute values asked for
+    CloudFilter::Dropped dropped; // points of tested nodes
+    std::uint64_t pointsTaken = 0;
+    std::uint64_t bytesRead = 0;             // of nodes
+    std::uint64_t attributeBytesSkipped = 0; // blocks of nodes read whose attributes nobody asked for
+    HierarchyCounters hierarchy;
+};
+
+struct WalkOptions {
+    int threads = 1;
+    const std::atomic<bool>* stop = nullptr; // once true, the walk ends with `cancelled`
+    // Points of the nodes done with. Called on the calling thread.
+    std::function<void(std::uint64_t points)> progress = nullptr;
+};
+
+// `attributes`: those the sink takes, in its order. Does not finish the sink. Errors: those of the reader
+// (with the node and the file's name, `name`) and of the sink.
+Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
+                                const std::vector<int>& attributes, PointSink& sink,
+                                const WalkOptions& options);
+
+// How many points walkPoints() would take, without reading more than that needs.
+Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
+                                  const WalkOptions& options);
+
+} // namespace stipple
