@@ -12,6 +12,8 @@
 #include <proj_experimental.h>
 
 #include <cmath>
+#include <map>
+#include <mutex>
 
 namespace stipple {
 
@@ -235,25 +237,70 @@ void dropImpossible(CrsReading& reading, const BoxD& bounds) {
     reading.crs = {};
 }
 
-} // namespace
-
-Result<CrsReading> crsOfLas(const las::Header& header) {
-    STIPPLE_TRY(proj, ProjContext::open());
-    CrsReading reading;
+bool wktMustHold(const las::Header& header) {
     constexpr std::uint16_t wktBit = 1u << 4; // LAS 1.4 R15 table 4
-    bool wktHolds = header.versionMinor >= 4 && (header.globalEncoding & wktBit) != 0;
+    return header.versionMinor >= 4 && (header.globalEncoding & wktBit) != 0;
+}
+
+CrsReading readRecords(const las::Header& header, ProjContext& proj) {
+    CrsReading reading;
+    bool wktHolds = wktMustHold(header);
     std::string wkt = las::wktRecord(header);
     Crs byWkt, byKeys;
     if (wktHolds)
-        byWkt = crsOfWkt(wkt, *proj, reading.warnings);
+        byWkt = crsOfWkt(wkt, proj, reading.warnings);
     if (!byWkt.known())
-        byKeys = crsOfKeys(header, *proj, reading.warnings);
+        byKeys = crsOfKeys(header, proj, reading.warnings);
     // Keys that name no system by its code spell out an ellipsoid and a projection, but lose the datum.
     if (!wktHolds && !byKeys.epsg)
-        byWkt = crsOfWkt(wkt, *proj, reading.warnings);
+        byWkt = crsOfWkt(wkt, proj, reading.warnings);
     reading.crs = byWkt.known() ? std::move(byWkt) : std::move(byKeys);
-    dropImpossible(reading, header.bounds);
     return reading;
+}
+
+// What PROJ made of records seen before: the hundreds of tiles of a survey bear the same ones, and each
+// reading costs it a tenth of a second and more.
+class KnownRecords {
+  public:
+    // All that readRecords looks at.
+    static std::string keyOf(const las::Header& header) {
+        std::string key = wktMustHold(header) ? "w" : "k";
+        for (const las::Vlr& vlr : header.vlrs)
+            if (vlr.userId == las::records::projection)
+                key += cat(vlr.recordId, " ", vlr.omitted ? 1 : 0, " ", vlr.data.size(), ":",
+                           std::string_view(reinterpret_cast<const char*>(vlr.data.data()), vlr.data.size()));
+        return key;
+    }
+    std::optional<CrsReading> find(const std::string& key) {
+        std::lock_guard lock(mutex_);
+        auto found = readings_.find(key);
+        return found == readings_.end() ? std::nullopt : std::optional(found->second);
+    }
+    void keep(const std::string& key, const CrsReading& reading) {
+        constexpr std::size_t maxKept = 64, maxKeyBytes = 1 << 16;
+        std::lock_guard lock(mutex_);
+        if (key.size() > 1 && key.size() <= maxKeyBytes && readings_.size() < maxKept)
+            readings_.emplace(key, reading);
+    }
+
+  private:
+    std::mutex mutex_;
+    std::map<std::string, CrsReading> readings_;
+};
+
+} // namespace
+
+Result<CrsReading> crsOfLas(const las::Header& header) {
+    static KnownRecords known;
+    std::string key = KnownRecords::keyOf(header);
+    std::optional<CrsReading> reading = known.find(key);
+    if (!reading) {
+        STIPPLE_TRY(proj, ProjContext::open());
+        reading = readRecords(header, *proj);
+        known.keep(key, *reading);
+    }
+    dropImpossible(*reading, header.bounds);
+    return std::move(*reading);
 }
 
 Result<Crs> crsFromUser(const std::string& text) {

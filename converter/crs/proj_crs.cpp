@@ -53,6 +53,35 @@ void describeUnit(PJ_CONTEXT* context, const PJ* horizontal, Crs& to) {
         to.unitMeters = factor;
 }
 
+void addAxes(PJ_CONTEXT* context, const PJ* crs, std::vector<CrsAxis>& to) {
+    ProjObject system{proj_crs_get_coordinate_system(context, crs)};
+    int count = system ? proj_cs_get_axis_count(context, system.get()) : 0;
+    for (int i = 0; i < count; ++i) {
+        const char *name = nullptr, *direction = nullptr, *unit = nullptr, *category = nullptr;
+        double factor = 0;
+        const char *authority = nullptr, *code = nullptr;
+        if (!proj_cs_get_axis_info(context, system.get(), i, &name, nullptr, &direction, &factor, &unit,
+                                   &authority, &code))
+            continue;
+        bool isLinear =
+            !(authority && code) ||
+            !proj_uom_get_info_from_database(context, authority, code, nullptr, nullptr, &category) ||
+            std::string_view(category) == "linear";
+        auto text = [](const char* from) { return std::string(from ? from : ""); };
+        to.push_back({text(name), text(direction), text(unit), isLinear ? factor : 0});
+    }
+}
+
+// As proj_normalize_for_visualization would have them.
+void putEastFirst(std::vector<CrsAxis>& axes) {
+    if (axes.size() < 2)
+        return;
+    bool northThenEast = axes[0].direction == "north" && axes[1].direction == "east";
+    bool byName = axes[0].name.starts_with("Northing") && axes[1].name.starts_with("Easting");
+    if (northThenEast || byName)
+        std::swap(axes[0], axes[1]);
+}
+
 std::string wktOf(PJ_CONTEXT* context, const PJ* crs) {
     const char* singleLine[] = {"MULTILINE=NO", nullptr};
     for (PJ_WKT_TYPE type : {PJ_WKT1_GDAL, PJ_WKT2_2019})
@@ -129,6 +158,13 @@ Crs ProjContext::describe(const ProjObject& given, const std::string& wkt) {
     if (const char* proj = proj_as_proj_string(context_, given.get(), PJ_PROJ_4, nullptr))
         crs.proj = proj;
     describeUnit(context_, horizontal, crs);
+    addAxes(context_, horizontal, crs.axes);
+    putEastFirst(crs.axes);
+    if (horizontalPart)
+        if (ProjObject vertical{proj_crs_get_sub_crs(context_, whole, 1)}) {
+            crs.vertical = proj_get_name(vertical.get());
+            addAxes(context_, vertical.get(), crs.axes);
+        }
     takeMessages();
     return crs;
 }

@@ -34,8 +34,8 @@ class ProjContext {
     ProjObject fromWkt(const std::string& wkt);
     ProjObject fromText(const std::string& text); // anything PROJ understands that is a CRS
 
-    // Name, EPSG code, PROJ string, unit; and WKT 1 (GDAL's dialect, as LAS wants it; WKT 2 where WKT 1
-    // has no words for it) unless `wkt` is given.
+    // Name, EPSG code, PROJ string, units, axes; and WKT 1 (GDAL's dialect, as LAS wants it; WKT 2 where WKT
+    // 1 has no words for it) unless `wkt` is given.
     Crs describe(const ProjObject& crs, const std::string& wkt = {});
 
   private:

@@ -44,6 +44,13 @@ Json crsJson(const Crs& crs) {
     json["proj"] = crs.proj;
     json["unit"] = crs.unit;
     json["unitMeters"] = crs.unitMeters;
+    if (!crs.vertical.empty())
+        json["vertical"] = crs.vertical;
+    for (const CrsAxis& axis : crs.axes)
+        json["axes"].push_back({{"name", axis.name},
+                                {"direction", axis.direction},
+                                {"unit", axis.unit},
+                                {"unitMeters", axis.unitMeters}});
     json["wkt"] = crs.wkt;
     return json;
 }

@@ -14,6 +14,14 @@
 
 namespace stipple {
 
+struct CrsAxis {
+    std::string name;      // "Easting"
+    std::string direction; // "east"
+    std::string unit;      // "metre"
+    double unitMeters = 0; // 0 where angular
+    friend bool operator==(const CrsAxis&, const CrsAxis&) = default;
+};
+
 // Coordinate reference system. Empty `wkt` and no `epsg`: none is known.
 struct Crs {
     std::string name;        // "WGS 84 / UTM zone 10N"
@@ -22,6 +30,10 @@ struct Crs {
     std::string proj;        // PROJ string, where known
     std::string unit;        // name of the horizontal axes' unit: "metre", "US survey foot", "degree"
     double unitMeters = 0;   // metres in one unit; 0 where unknown or angular
+    std::string vertical;    // name of the vertical system, where the definition has one: "NAVD88 height"
+    // What the points' x, y and, where the definition says, z are. East comes first, as in LAS, also where
+    // the definition has north first. Empty where unknown.
+    std::vector<CrsAxis> axes;
 
     bool known() const { return !wkt.empty() || epsg.has_value(); }
     friend bool operator==(const Crs&, const Crs&) = default;

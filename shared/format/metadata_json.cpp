@@ -176,7 +176,7 @@ const Json& part(Fields& fields, const char* name) {
     return json != nullptr ? *json : none;
 }
 
-Crs readCrs(Fields crs) {
+Crs readCrs(Fields crs, std::optional<Error>& error) {
     Crs read;
     read.name = crs.text("name");
     read.wkt = crs.text("wkt");
@@ -185,6 +185,14 @@ Crs readCrs(Fields crs) {
     read.proj = crs.text("proj");
     read.unit = crs.text("unit");
     read.unitMeters = crs.number("unitMeters");
+    if (crs.find("vertical") != nullptr)
+        read.vertical = crs.text("vertical");
+    if (crs.find("axes") != nullptr)
+        for (const Json& json : crs.list("axes")) {
+            Fields axis(json, crs.pathOf("axes"), error);
+            read.axes.push_back(
+                {axis.text("name"), axis.text("direction"), axis.text("unit"), axis.number("unitMeters")});
+        }
     return read;
 }
 
@@ -255,6 +263,13 @@ Bytes writeMetadata(const CloudMetadata& metadata) {
     crs["unitMeters"] = numberJson(metadata.crs.unitMeters);
     crs["proj"] = metadata.crs.proj;
     crs["wkt"] = metadata.crs.wkt;
+    if (!metadata.crs.vertical.empty())
+        crs["vertical"] = metadata.crs.vertical;
+    for (const CrsAxis& axis : metadata.crs.axes)
+        crs["axes"].push_back({{"name", axis.name},
+                               {"direction", axis.direction},
+                               {"unit", axis.unit},
+                               {"unitMeters", numberJson(axis.unitMeters)}});
     json["grid"] = {{"scale", vecJson(metadata.grid.scale)}, {"offset", vecJson(metadata.grid.offset)}};
     json["rootCube"] = {{"min", vecJson(metadata.rootCube.min)}, {"bits", metadata.rootCube.bits}};
     json["spacing"] = numberJson(metadata.spacing);
@@ -290,7 +305,7 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
     CloudMetadata metadata;
     metadata.name = fields.text("name");
     metadata.pointCount = fields.count("pointCount");
-    metadata.crs = readCrs(Fields(part(fields, "crs"), "crs", error));
+    metadata.crs = readCrs(Fields(part(fields, "crs"), "crs", error), error);
     Fields grid(part(fields, "grid"), "grid", error);
     metadata.grid = {grid.numbers("scale"), grid.numbers("offset")};
     Fields cube(part(fields, "rootCube"), "rootCube", error);

@@ -225,6 +225,48 @@ TEST_CASE("a file without records has no system and no warnings") {
     CHECK(reading.warnings.empty());
 }
 
+TEST_CASE("axes are those of the points: east first, heights where the system has them") {
+    Crs utm = *crsFromUser("EPSG:6339+6360");
+    CHECK(utm.vertical == "NAVD88 height (ftUS)");
+    REQUIRE(utm.axes.size() == 3);
+    CHECK(utm.axes[0] == CrsAxis{"Easting", "east", "metre", 1});
+    CHECK(utm.axes[1] == CrsAxis{"Northing", "north", "metre", 1});
+    CHECK(utm.axes[2].direction == "up");
+    CHECK(utm.axes[2].unit == "US survey foot");
+    CHECK(utm.axes[2].unitMeters == Approx(12 / 39.37).epsilon(1e-12));
+
+    Crs geographic = *crsFromUser("EPSG:4326");
+    CHECK(geographic.vertical.empty());
+    REQUIRE(geographic.axes.size() == 2);
+    CHECK(geographic.axes[0] == CrsAxis{"Geodetic longitude", "east", "degree", 0});
+    CHECK(geographic.axes[1].direction == "north");
+    CHECK(crsFromUser("EPSG:4978")->axes.size() == 3);
+    // North comes first in the definition.
+    CHECK(crsFromUser("EPSG:31467")->axes[0].direction == "east");
+}
+
+TEST_CASE("records read before are known by all that they hold") {
+    las::Header utm10 = headerWithKeys({1024, 0, 1, 1, 3072, 0, 1, 26910});
+    las::Header utm11 = headerWithKeys({1024, 0, 1, 1, 3072, 0, 1, 26911});
+    for (int round = 0; round < 2; ++round) {
+        CHECK(requireReading(utm10).crs.epsg == 26910);
+        CHECK(requireReading(utm11).crs.epsg == 26911);
+    }
+    // The same WKT record, with and without the bit that makes it hold over the keys.
+    las::Header both = utm10;
+    both.versionMinor = 4;
+    both.vlrs.push_back(textRecord(2112, wktOf("EPSG:32633")));
+    CHECK(requireReading(both).crs.epsg == 26910);
+    both.globalEncoding = 16;
+    CHECK(requireReading(both).crs.epsg == 32633);
+    // Whether coordinates can be geocentric is asked of each file.
+    las::Header geocentric = headerWithKeys({1024, 0, 1, 3, 2048, 0, 1, 4978});
+    geocentric.bounds = {{4e6, 4e6, 2.85e6}, {4e6, 4e6, 2.85e6}};
+    CHECK(requireReading(geocentric).crs.known());
+    geocentric.bounds = {{5, 5, 5}, {6, 6, 6}};
+    CHECK_FALSE(requireReading(geocentric).crs.known());
+}
+
 TEST_CASE("users name systems by code, WKT, PROJ string or name") {
     CHECK(crsFromUser("EPSG:26910")->epsg == 26910);
     CHECK(crsFromUser("EPSG:6339+5703")->name == "NAD83(2011) / UTM zone 10N + NAVD88 height");

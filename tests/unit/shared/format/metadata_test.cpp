@@ -12,8 +12,14 @@ namespace {
 
 CloudMetadata fullMetadata() {
     CloudMetadata metadata = sampleMetadata();
-    metadata.crs = {
-        "WGS 84 / UTM zone 32N", "PROJCRS[\"quoted \\ text\"]", 32632, "+proj=utm +zone=32", "metre", 1.0};
+    metadata.crs = {"WGS 84 / UTM zone 32N",
+                    "PROJCRS[\"quoted \\ text\"]",
+                    32632,
+                    "+proj=utm +zone=32",
+                    "metre",
+                    1.0,
+                    "DHHN2016 height",
+                    {{"Easting", "east", "metre", 1}, {"Latitude", "north", "degree", 0}}};
     metadata.grid = {{0.001, 0.1, 1.0 / 3.0}, {5e-324, -123456789.123456789, 1e300}};
     metadata.rootCube.min = {INT64_MIN / 4, 7, -9007199254740993};
     metadata.bounds = {{-5, -6, -7}, {1, 2, INT64_MAX}};
@@ -54,6 +60,16 @@ TEST_CASE("metadata come back, every double to its last bit") {
     CHECK(read.pointHash == metadata.pointHash);
     CHECK(read.sources == metadata.sources);
     CHECK(read.tool == metadata.tool);
+}
+
+TEST_CASE("vertical system and axes may be absent") {
+    CloudMetadata metadata = fullMetadata();
+    metadata.crs.vertical.clear();
+    metadata.crs.axes.clear();
+    Bytes block = writeMetadata(metadata);
+    CHECK(textOf(block).find("axes") == std::string::npos);
+    CHECK(textOf(block).find("vertical") == std::string::npos);
+    CHECK(need(parseMetadata(block)).crs == metadata.crs);
 }
 
 TEST_CASE("statistics that are no finite number come back") {
