@@ -7,20 +7,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace stipple {
 
 namespace {
 Status refuseDoubles(const std::vector<std::string>& paths) {
-    std::vector<std::filesystem::path> seen;
+    std::set<std::string> seen;
     for (const std::string& path : paths) {
         std::error_code error;
         std::filesystem::path real = std::filesystem::canonical(path, error);
         if (error)
             continue; // opening it says what is wrong
-        if (std::find(seen.begin(), seen.end(), real) != seen.end())
+        if (!seen.insert(real.string()).second)
             return Error{ErrorCode::invalidArgument, "the input is given twice", path, "name it once"};
-        seen.push_back(real);
     }
     return {};
 }

@@ -1,11 +1,11 @@
 #include "converter/input/cloud_input.hpp"
 
+#include "converter/input/idle_files.hpp"
 #include "shared/base/text.hpp"
 #include "shared/format/cloud_file.hpp"
 #include "shared/io/file_source.hpp"
 
 #include <filesystem>
-#include <mutex>
 
 namespace stipple {
 
@@ -54,7 +54,7 @@ class CloudInput final : public PointInput {
                 ErrorCode::corrupt,
                 cat("its nodes hold ", points, " points, but its metadata say ", metadata.pointCount), path,
                 "`stipple verify` tells what else is wrong with it"};
-        input->idle_.push_back(std::move(cloud));
+        input->idle_.put(std::move(cloud));
         return std::unique_ptr<PointInput>(std::move(input));
     }
 
@@ -65,21 +65,14 @@ class CloudInput final : public PointInput {
     Result<PointBatch> readNode(std::size_t part) const {
         STIPPLE_TRY(cloud, take());
         auto points = cloud.reader->readNode(entries_[part]);
-        std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(cloud));
+        idle_.putAfterPart(std::move(cloud), parts_.size());
         return points;
     }
 
   private:
     Result<OpenCloud> take() const {
-        {
-            std::lock_guard lock(mutex_);
-            if (!idle_.empty()) {
-                OpenCloud cloud = std::move(idle_.back());
-                idle_.pop_back();
-                return cloud;
-            }
-        }
+        if (std::optional<OpenCloud> idle = idle_.take())
+            return std::move(*idle);
         STIPPLE_TRY(cloud, openCloud(description_.path));
         if (cloud.reader->metadata().pointHash != pointHash_ ||
             cloud.reader->header().fileBytes != description_.source.sizeBytes)
@@ -92,8 +85,7 @@ class CloudInput final : public PointInput {
     std::string pointHash_;
     std::vector<InputPart> parts_;
     std::vector<NodeEntry> entries_; // of each part
-    mutable std::mutex mutex_;
-    mutable std::vector<OpenCloud> idle_;
+    mutable IdleFiles<OpenCloud> idle_;
 };
 
 // Hands a node out in batches.

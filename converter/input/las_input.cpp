@@ -1,12 +1,12 @@
 #include "converter/input/las_input.hpp"
 
 #include "converter/crs/crs.hpp"
+#include "converter/input/idle_files.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 
 #include <cmath>
 #include <filesystem>
-#include <mutex>
 
 namespace stipple {
 
@@ -47,7 +47,7 @@ class LasInput final : public PointInput {
         STIPPLE_TRY(las, openLas(path));
         STIPPLE_CHECK(input->describe(path, las));
         input->divide(*las.reader);
-        input->idle_.push_back(std::move(las));
+        input->idle_.put(std::move(las));
         return std::unique_ptr<PointInput>(std::move(input));
     }
 
@@ -59,13 +59,9 @@ class LasInput final : public PointInput {
         return las::boundsContradiction(header_, found);
     }
 
-    // A reader of the file for one stream, and back. Readers are kept: opening one reads the records and, of
-    // LAZ, the chunk table.
+    // A reader of the file for one stream, and back.
     Result<OpenLas> take() const;
-    void giveBack(OpenLas las) const {
-        std::lock_guard lock(mutex_);
-        idle_.push_back(std::move(las));
-    }
+    void giveBack(OpenLas las) const { idle_.putAfterPart(std::move(las), parts_.size()); }
 
   private:
     Status describe(const std::string& path, const OpenLas& las) {
@@ -112,8 +108,7 @@ class LasInput final : public PointInput {
     las::Header header_; // without its records
     std::vector<InputPart> parts_;
     std::vector<std::uint64_t> starts_; // of each part
-    mutable std::mutex mutex_;
-    mutable std::vector<OpenLas> idle_;
+    mutable IdleFiles<OpenLas> idle_;
 };
 
 class LasStream final : public PointStream {
@@ -146,14 +141,8 @@ class LasStream final : public PointStream {
 };
 
 Result<OpenLas> LasInput::take() const {
-    {
-        std::lock_guard lock(mutex_);
-        if (!idle_.empty()) {
-            OpenLas las = std::move(idle_.back());
-            idle_.pop_back();
-            return las;
-        }
-    }
+    if (std::optional<OpenLas> idle = idle_.take())
+        return std::move(*idle);
     STIPPLE_TRY(las, openLas(description_.path));
     if (las.reader->pointCount() != description_.source.pointCount ||
         las.source->sizeBytes() != description_.source.sizeBytes)
