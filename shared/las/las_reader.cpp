@@ -4,6 +4,8 @@
 #include "shared/las/extra_bytes.hpp"
 #include "shared/las/header_block.hpp"
 #include "shared/las/las_records.hpp"
+#include "shared/las/laz/chunk_reader.hpp"
+#include "shared/las/laz/layer_choice.hpp"
 #include "shared/las/record_codec.hpp"
 
 #include <algorithm>
@@ -17,18 +19,33 @@ namespace {
 // What one read asks of the source: enough for a disk or a server, little beside a batch.
 constexpr std::uint64_t readBytes = 2 * 1024 * 1024;
 
+// Decoded records at a time.
+constexpr std::uint64_t blockBytes = 16 * 1024;
+// The room that is made for points before any of them is decoded.
+constexpr std::uint64_t trustedBytes = 64 * 1024 * 1024;
+
 constexpr std::uint8_t compressedBits = 0xC0; // LAZ: bit 7; old LASzip: bit 6
 
 class FileReader final : public Reader {
   public:
     explicit FileReader(ByteSource& source) : source_(source) {}
+    // Another reader of a file that was parsed.
+    FileReader(const FileReader& parsed, ByteSource& source)
+        : source_(source), header_(parsed.header_), layout_(parsed.layout_), pointCount_(parsed.pointCount_),
+          pointsEnd_(parsed.pointsEnd_), warnings_(parsed.warnings_), fileBytes_(parsed.fileBytes_),
+          chunkIndex_(parsed.chunkIndex_) {
+        makeChunkReader();
+    }
 
     Status parse();
+    Result<std::unique_ptr<Reader>> openAnother(ByteSource& source) const override;
 
     const Header& header() const override { return header_; }
     const Schema& schema() const override { return layout_.schema; }
     std::uint64_t pointCount() const override { return pointCount_; }
     const std::vector<std::string>& warnings() const override { return warnings_; }
+    std::span<const std::uint64_t> chunkStarts() const override;
+    void select(std::span<const std::string> attributes) override;
     Status read(std::uint64_t first, std::uint64_t count, PointBatch& batch) override;
 
   private:
@@ -48,7 +65,10 @@ class FileReader final : public Reader {
     Result<bool> signatureAt(WindowReader& file, std::uint64_t offset) const;
     Status readExtendedRecords(const HeaderBlock& block, WindowReader& file, RecordWalk& walk);
     void buildLayout();
-    void countPoints();
+    Status countPoints();
+    void makeChunkReader();
+    Status readRecords(std::uint64_t first, std::uint64_t count, PointBatch& batch);
+    Status readChunks(std::uint64_t first, std::uint64_t count, PointBatch& batch);
 
     ByteSource& source_;
     Header header_;
@@ -56,6 +76,11 @@ class FileReader final : public Reader {
     std::uint64_t pointCount_ = 0;
     std::uint64_t pointsEnd_ = 0; // end of the file, or where the extended records begin
     std::vector<std::string> warnings_;
+    std::uint64_t fileBytes_ = 0;
+    // LAZ only:
+    std::shared_ptr<const laz::ChunkIndex> chunkIndex_;
+    std::unique_ptr<laz::ChunkReader> chunks_;
+    Bytes block_; // records that were decoded, on their way into columns
 };
 
 Status FileReader::parse() {
@@ -69,11 +94,39 @@ Status FileReader::parse() {
     STIPPLE_CHECK(takeFormat(block));
     takeCounts(block);
     WindowReader file(source_, source_.sizeBytes());
-    pointsEnd_ = file.fileBytes();
+    pointsEnd_ = fileBytes_ = file.fileBytes();
     STIPPLE_CHECK(readRecords(block, file));
     buildLayout();
-    countPoints();
-    return {};
+    return countPoints();
+}
+
+Result<std::unique_ptr<Reader>> FileReader::openAnother(ByteSource& source) const {
+    // The size of a source is known after its first answer.
+    if (source.sizeBytes() == 0)
+        STIPPLE_CHECK(readNow(source, {0, 1}));
+    if (source.sizeBytes() != fileBytes_)
+        return Error{ErrorCode::changed,
+                     cat("the file has ", source.sizeBytes(), " bytes now, but had ", fileBytes_),
+                     source.name(), "open it again"};
+    return std::unique_ptr<Reader>(std::make_unique<FileReader>(*this, source));
+}
+
+void FileReader::makeChunkReader() {
+    if (chunkIndex_)
+        chunks_ = std::make_unique<laz::ChunkReader>(source_, chunkIndex_);
+}
+
+std::span<const std::uint64_t> FileReader::chunkStarts() const {
+    if (!chunkIndex_ || chunkIndex_->starts.empty())
+        return {};
+    // The last entry closes the last chunk; an empty file has one entry.
+    const std::span<const std::uint64_t> all = chunkIndex_->starts;
+    return all.size() == 1 ? all : all.first(all.size() - 1);
+}
+
+void FileReader::select(std::span<const std::string> attributes) {
+    if (chunks_)
+        chunks_->select(laz::layersOf(layout_, attributes));
 }
 
 void FileReader::takeFields(const HeaderBlock& block) {
@@ -231,28 +284,41 @@ void FileReader::buildLayout() {
     addExtraBytes(layout_, header_.recordLength, descriptors, warnings_);
 }
 
-void FileReader::countPoints() {
+Status FileReader::countPoints() {
     pointCount_ = header_.pointCount;
-    if (header_.compressed)
-        return;
+    if (header_.compressed) {
+        STIPPLE_TRY(index, laz::readChunkIndex(source_, header_, pointsEnd_, warnings_));
+        pointCount_ = index.pointCount;
+        chunkIndex_ = std::make_shared<const laz::ChunkIndex>(std::move(index));
+        makeChunkReader();
+        return {};
+    }
     std::uint64_t room = pointsEnd_ - std::min<std::uint64_t>(pointsEnd_, header_.pointDataOffset);
     if (pointCount_ > room / header_.recordLength) {
         pointCount_ = room / header_.recordLength;
         warn("the header counts ", header_.pointCount, " points, but ",
-             pointsEnd_ == source_.sizeBytes() ? "the file ends" : "the extended records begin", " after ",
+             pointsEnd_ == fileBytes_ ? "the file ends" : "the extended records begin", " after ",
              pointCount_);
     }
+    return {};
 }
 
 Status FileReader::read(std::uint64_t first, std::uint64_t count, PointBatch& batch) {
-    if (header_.compressed)
-        return Error{ErrorCode::unsupported, "LAZ is not read yet", source_.name(),
-                     "decompress it to LAS first"};
     if (first > pointCount_)
         return Error{ErrorCode::outOfRange,
                      cat("point ", first, " was asked for, but there are only ", pointCount_), source_.name(),
                      ""};
     count = std::min(count, pointCount_ - first);
+    if (!chunks_)
+        return readRecords(first, count, batch);
+    Status decoded = readChunks(first, count, batch);
+    if (decoded.ok())
+        return {};
+    batch.resize(layout_.schema, 0);
+    return decoded.error().at(source_.name());
+}
+
+Status FileReader::readRecords(std::uint64_t first, std::uint64_t count, PointBatch& batch) {
     batch.resize(layout_.schema, static_cast<std::size_t>(count));
     std::uint64_t recordsPerRead = std::max<std::uint64_t>(1, readBytes / layout_.recordLength);
     for (std::uint64_t done = 0; done < count; done += recordsPerRead) {
@@ -265,6 +331,26 @@ Status FileReader::read(std::uint64_t first, std::uint64_t count, PointBatch& ba
                          cat(source_.name(), ", byte ", range.offset), "open it again"};
         unpackRecords(layout_, bytes, batch, static_cast<std::size_t>(done));
     }
+    return {};
+}
+
+// In blocks that stay in the cache from decoding to the columns.
+Status FileReader::readChunks(std::uint64_t first, std::uint64_t count, PointBatch& batch) {
+    STIPPLE_CHECK(chunks_->seek(first));
+    const std::uint64_t recordsPerBlock = std::max<std::uint64_t>(1, blockBytes / layout_.recordLength);
+    std::uint64_t room = std::max(recordsPerBlock, trustedBytes / layout_.recordLength) / 2;
+    for (std::uint64_t done = 0; done < count; done += recordsPerBlock) {
+        std::uint64_t part = std::min(recordsPerBlock, count - done);
+        // A header may count any number of points: the batch grows as they turn out to be there.
+        if (done == 0 || done + part > room) {
+            room = std::min(count, 2 * room);
+            batch.resize(layout_.schema, static_cast<std::size_t>(room));
+        }
+        block_.resize(static_cast<std::size_t>(part) * layout_.recordLength);
+        STIPPLE_CHECK(chunks_->read(block_));
+        unpackRecords(layout_, block_, batch, static_cast<std::size_t>(done));
+    }
+    batch.resize(layout_.schema, static_cast<std::size_t>(count));
     return {};
 }
 

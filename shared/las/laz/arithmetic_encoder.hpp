@@ -4,6 +4,8 @@
 #include "shared/base/bytes.hpp"
 #include "shared/las/laz/arithmetic_model.hpp"
 
+#include <algorithm>
+
 namespace stipple::las::laz {
 
 // A small value, as the decoder is: hot loops work on a local copy. It writes where it was told to, without
@@ -124,10 +126,13 @@ class EncodedStream {
   public:
     ArithmeticEncoder encoder;
 
-    void start() {
-        if (bytes_.empty())
-            bytes_.resize(1024);
-        encoder = ArithmeticEncoder(bytes_.data());
+    void start() { startBehind({}); }
+    // The bytes begin with `front`, as it is.
+    void startBehind(ByteSpan front) {
+        if (bytes_.size() < front.size() + 1024)
+            bytes_.resize(front.size() + 1024);
+        std::copy(front.begin(), front.end(), bytes_.begin());
+        encoder = ArithmeticEncoder(bytes_.data() + front.size());
     }
     // Room for `size` more bytes and those of finish().
     void ensureRoom(std::size_t size) {

@@ -27,8 +27,19 @@ class IntegerCompressor {
 
     STIPPLE_LAZ_INLINE std::int32_t decompress(ArithmeticDecoder& from, std::int32_t predicted,
                                                unsigned context = 0) {
-        auto value = static_cast<std::int32_t>(static_cast<std::uint32_t>(predicted) +
-                                               readCorrection(from, sizes_[context]));
+        return decompressBy(sizes_[context], from, predicted);
+    }
+    STIPPLE_LAZ_INLINE void compress(ArithmeticEncoder& to, std::int32_t predicted, std::int32_t value,
+                                     unsigned context = 0) {
+        compressBy(sizes_[context], to, predicted, value);
+    }
+
+    // With a model of sizes that the caller owns, where only running shows how many contexts there are.
+    using SizeModel = SymbolModel<Bits + 1>;
+    STIPPLE_LAZ_INLINE std::int32_t decompressBy(SizeModel& sizes, ArithmeticDecoder& from,
+                                                 std::int32_t predicted) {
+        auto value =
+            static_cast<std::int32_t>(static_cast<std::uint32_t>(predicted) + readCorrection(from, sizes));
         if constexpr (Bits < 32) {
             if (value < 0)
                 value += range;
@@ -37,9 +48,8 @@ class IntegerCompressor {
         }
         return value;
     }
-
-    STIPPLE_LAZ_INLINE void compress(ArithmeticEncoder& to, std::int32_t predicted, std::int32_t value,
-                                     unsigned context = 0) {
+    STIPPLE_LAZ_INLINE void compressBy(SizeModel& sizes, ArithmeticEncoder& to, std::int32_t predicted,
+                                       std::int32_t value) {
         auto correction = static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
                                                     static_cast<std::uint32_t>(predicted));
         if constexpr (Bits < 32) {
@@ -48,7 +58,7 @@ class IntegerCompressor {
             else if (correction > range / 2 - 1)
                 correction -= range;
         }
-        writeCorrection(to, correction, sizes_[context]);
+        writeCorrection(to, correction, sizes);
     }
 
     // The k of the last correction, 0 … Bits: how well predictions work now, context for others.
@@ -67,7 +77,7 @@ class IntegerCompressor {
         return places_[k];
     }
 
-    STIPPLE_LAZ_INLINE std::uint32_t readCorrection(ArithmeticDecoder& from, SymbolModel<Bits + 1>& sizes) {
+    STIPPLE_LAZ_INLINE std::uint32_t readCorrection(ArithmeticDecoder& from, SizeModel& sizes) {
         const unsigned k = from.decodeSymbol(sizes);
         k_ = k;
         if (k == 0)
@@ -83,7 +93,7 @@ class IntegerCompressor {
     }
 
     STIPPLE_LAZ_INLINE void writeCorrection(ArithmeticEncoder& to, std::int32_t correction,
-                                            SymbolModel<Bits + 1>& sizes) {
+                                            SizeModel& sizes) {
         const auto c = static_cast<std::uint32_t>(correction);
         const std::uint32_t size = correction <= 0 ? 0u - c : c - 1;
         const unsigned k = size == 0 ? 0 : 32 - static_cast<unsigned>(__builtin_clz(size));
@@ -101,7 +111,7 @@ class IntegerCompressor {
         to.writeBits(rawBits, place & ((1u << rawBits) - 1));
     }
 
-    std::array<SymbolModel<Bits + 1>, Contexts> sizes_;
+    std::array<SizeModel, Contexts> sizes_;
     BitModel zeroOrOne_;
     unsigned k_ = 0;
     std::array<bool, Bits + 1> ready_{};

@@ -216,26 +216,3 @@ TEST_CASE("bounds in the header agree with the points in all files but one") {
         CHECK(las::boundsContradiction(las.header, boxOf(las.points)).has_value() == lies);
     }
 }
-
-TEST_CASE("the header of a LAZ file is read, its points are refused") {
-    STIPPLE_NEEDS_DATA();
-    for (const char* name : {"las-pairs/point-color-time", "las-pairs/pdrf10-1.4", "las-pairs/point10-1.0"}) {
-        CAPTURE(name);
-        LasContents las = readFile(std::string(name) + ".las");
-        auto source = openFileSource(dataPath(std::string(name) + ".laz"));
-        REQUIRE(source.ok());
-        auto laz = las::Reader::open(**source);
-        REQUIRE(laz.ok());
-        CHECK((*laz)->header().compressed);
-        CHECK((*laz)->header().pointFormat == las.header.pointFormat);
-        CHECK((*laz)->pointCount() == las.points.size());
-        CHECK((*laz)->schema() == las.schema);
-        PointBatch points;
-        CHECK((*laz)->read(0, 1, points).error().code == ErrorCode::unsupported);
-    }
-    for (const char* name : {"broken_coder", "broken_size", "broken_version"}) {
-        auto source = openFileSource(dataPath(std::string("las-odd/") + name + ".laz"));
-        REQUIRE(source.ok());
-        CHECK(readLas(**source).error().code == ErrorCode::unsupported);
-    }
-}
