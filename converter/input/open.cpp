@@ -1,6 +1,7 @@
 #include "converter/input/open.hpp"
 
 #include "converter/input/cloud_input.hpp"
+#include "converter/input/e57/e57_input.hpp"
 #include "converter/input/las_input.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
@@ -25,14 +26,17 @@ constexpr std::array kinds = {
          [](const std::string& path, const InputOptions&) { return openLasInput(path); }},
     Kind{"\x89STPL", cloudName,
          [](const std::string& path, const InputOptions&) { return openCloudInput(path); }},
-    Kind{"ASTM-E57", "an E57 file", nullptr},
+    Kind{"ASTM-E57", "an E57 file",
+         [](const std::string& path, const InputOptions& options) {
+             return openE57Input(path, options.scale);
+         }},
     Kind{"ply\n", "a PLY file", nullptr},
     Kind{"ply\r", "a PLY file", nullptr},
     Kind{"# .PCD", "a PCD file", nullptr},
     Kind{"PK\x03\x04", "a ZIP archive", nullptr},
 };
 
-constexpr std::string_view readKinds = "give LAS, LAZ or Stipple files";
+constexpr std::string_view readKinds = "give LAS, LAZ, E57 or Stipple files";
 
 Result<std::string> startOf(const std::string& path) {
     STIPPLE_TRY(source, openFileSource(path));
