@@ -23,7 +23,7 @@ namespace stipple {
 
 struct ConvertOptions {
     std::string name = {}; // of the cloud; empty: the output's file name without its extension
-    std::string crs = {};  // "EPSG:n", for inputs that state none; empty: what the inputs state
+    std::string crs = {};  // of the cloud, "EPSG:n" (ScanOptions::crs); empty: what the inputs state
     int threads = 0;       // 0: one for each core
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;

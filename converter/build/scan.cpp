@@ -2,11 +2,13 @@
 
 #include "converter/build/common_schema.hpp"
 #include "converter/crs/crs.hpp"
+#include "converter/input/reproject.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace stipple {
@@ -32,27 +34,43 @@ bool sameMeaning(const Attribute& a, const Attribute& b) {
            (!a.noData || same(*a.noData, *b.noData));
 }
 
+// Heights that only one of the two defines are no difference.
 bool sameCrs(const Crs& a, const Crs& b) {
+    if (!a.vertical.empty() && !b.vertical.empty() && a.vertical != b.vertical)
+        return false;
     if (a.epsg && b.epsg)
         return *a.epsg == *b.epsg;
     return a.wkt == b.wkt || (!a.name.empty() && a.name == b.name);
 }
 
-std::string crsText(const Crs& crs) {
-    std::string name = crs.name.empty() ? "an unnamed system" : crs.name;
-    return crs.epsg ? cat(name, " (EPSG:", *crs.epsg, ")") : name;
+// Of several texts for one system the first holds, in any order of inputs: one with heights, then by text.
+bool comesBefore(const Crs& a, const Crs& b) {
+    if (a.vertical.empty() != b.vertical.empty())
+        return !a.vertical.empty();
+    return !a.wkt.empty() && (b.wkt.empty() || a.wkt < b.wkt);
 }
 
-// The CRS of the cloud, and of inputs that state none.
-Result<Crs> commonCrs(const std::vector<ScannedInput>& inputs, const std::string& wanted,
-                      std::vector<std::string>& warnings) {
+// "a.las", "a.las and 11 more inputs"
+class Named {
+  public:
+    void add(const std::string& path) {
+        if (count_++ == 0)
+            first_ = path;
+    }
+    bool any() const { return count_ > 0; }
+    std::string text() const {
+        return count_ <= 1 ? first_ : cat(first_, " and ", count_ - 1, " more input", count_ > 2 ? "s" : "");
+    }
+
+  private:
+    std::string first_;
+    std::size_t count_ = 0;
+};
+
+// The CRS that all inputs that state one are in.
+Result<Crs> statedCrs(const std::vector<ScannedInput>& inputs) {
     Crs common;
     std::string from;
-    if (!wanted.empty()) {
-        STIPPLE_TRY(crs, crsFromUser(wanted));
-        common = crs;
-        from = "--crs";
-    }
     for (const ScannedInput& input : inputs) {
         const InputDescription& stated = input.description();
         if (!stated.crs.known())
@@ -63,19 +81,106 @@ Result<Crs> commonCrs(const std::vector<ScannedInput>& inputs, const std::string
         } else if (!sameCrs(common, stated.crs)) {
             return Error{
                 ErrorCode::invalidArgument,
-                cat("its CRS is ", crsText(stated.crs), ", but that of ", from, " is ", crsText(common)),
-                stated.path, "bring the inputs into one CRS first"};
-        } else if (common.wkt != stated.crs.wkt && !stated.crs.wkt.empty() &&
-                   (common.wkt.empty() || stated.crs.wkt < common.wkt)) {
-            common = stated.crs; // of several texts for one system the first by text, in any order of inputs
+                cat("its CRS is ", crsTitle(stated.crs), ", but that of ", from, " is ", crsTitle(common)),
+                stated.path, "--crs EPSG:n brings all inputs into one"};
+        } else if (comesBefore(stated.crs, common)) {
+            common = stated.crs;
         }
     }
-    if (!common.known() && !inputs.empty())
+    return common;
+}
+
+// Inputs of one CRS that are to be brought into another.
+struct Journey {
+    Crs from;
+    BoxD area; // of all of them, so that they go the same way
+    Named inputs;
+    double coarsestStep = 0;
+    std::shared_ptr<const CrsTransformation> transformation;
+};
+
+std::string journeyText(const Journey& journey, const Crs& to) {
+    const CrsTransformation::Facts& facts = journey.transformation->facts();
+    std::string text = cat(journey.inputs.text(), ": reprojected from ", crsTitle(journey.from), " to ",
+                           crsTitle(to), " (", facts.operation, "); ");
+    if (!facts.accuracyMeters)
+        text += "how exact that is is unknown to PROJ";
+    else if (*facts.accuracyMeters == 0)
+        text += "exact but for rounding";
+    else
+        text += cat("exact to ", *facts.accuracyMeters, " m, as PROJ states");
+    if (facts.isBallpark)
+        text +=
+            ", and without a shift between datums, as PROJ has none: points may lie metres to hundreds of "
+            "metres off";
+    text += cat("; x and y are rounded to ", journey.coarsestStep, " ", to.unit, "; heights are ",
+                facts.keepsHeights ? "kept" : "transformed, too");
+    bool otherUnit = journey.from.unitMeters != to.unitMeters && journey.from.unitMeters > 0;
+    if (facts.keepsHeights && otherUnit && journey.from.unitMeters != 1 && journey.from.vertical.empty())
+        text += cat(" in their unit, which may be ", journey.from.unit);
+    return text;
+}
+
+// Wraps every input of another CRS in its reprojection.
+Status bringInto(const Crs& to, std::vector<ScannedInput>& inputs, std::vector<std::string>& warnings) {
+    std::map<std::string, Journey> journeys;
+    auto keyOf = [](const Crs& crs) { return cat(crs.epsg.value_or(0), " ", crs.vertical, " ", crs.wkt); };
+    auto mustGo = [&](const ScannedInput& input) {
+        return input.description().crs.known() && !sameCrs(input.description().crs, to);
+    };
+    for (const ScannedInput& input : inputs) {
+        if (!mustGo(input))
+            continue;
+        const InputDescription& d = input.description();
+        Journey& journey = journeys[keyOf(d.crs)];
+        journey.from = d.crs;
+        journey.inputs.add(d.path);
+        if (!d.bounds.empty()) {
+            journey.area.extend(d.grid.toWorld(d.bounds.min));
+            journey.area.extend(d.grid.toWorld(d.bounds.max));
+        }
+    }
+    for (auto& [key, journey] : journeys) {
+        STIPPLE_TRY(transformation, CrsTransformation::create(journey.from, to, journey.area));
+        journey.transformation = std::move(transformation);
+    }
+    for (ScannedInput& input : inputs) {
+        if (!mustGo(input))
+            continue;
+        Journey& journey = journeys[keyOf(input.description().crs)];
+        STIPPLE_TRY(reprojected, reprojectInput(std::move(input.input), journey.transformation, to));
+        input.input = std::move(reprojected);
+        journey.coarsestStep = std::max(journey.coarsestStep, input.description().grid.scale.x);
+    }
+    for (const auto& [key, journey] : journeys)
+        warnings.push_back(journeyText(journey, to));
+    return {};
+}
+
+// The CRS of the cloud; inputs of others are brought into it.
+Result<Crs> settleCrs(std::vector<ScannedInput>& inputs, const ScanOptions& options,
+                      std::vector<std::string>& warnings) {
+    Crs common;
+    if (options.target) {
+        common = *options.target;
+    } else if (!options.crs.empty()) {
+        STIPPLE_TRY(crs, crsFromUser(options.crs));
+        common = crs;
+    } else {
+        STIPPLE_TRY(crs, statedCrs(inputs));
+        common = crs;
+    }
+    if (!common.known()) {
         warnings.push_back("no input states a coordinate reference system; --crs EPSG:n sets it");
+        return common;
+    }
+    Named without;
     for (const ScannedInput& input : inputs)
-        if (common.known() && !input.description().crs.known() && wanted.empty())
-            warnings.push_back(
-                cat(input.description().path, ": states no CRS; taken to be ", crsText(common)));
+        if (!input.description().crs.known())
+            without.add(input.description().path);
+    if (without.any())
+        warnings.push_back(cat(without.text(), ": no CRS stated; taken to be ", crsTitle(common)));
+    STIPPLE_CHECK(bringInto(common, inputs, warnings));
     return common;
 }
 
@@ -117,17 +222,20 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
     if (paths.empty())
         return Error{ErrorCode::invalidArgument, "there is no input", "", "name at least one file"};
     STIPPLE_CHECK(refuseDoubles(paths));
-    std::vector<Grid> grids;
-    std::vector<Schema> schemas;
     for (const std::string& path : paths) {
         STIPPLE_TRY(input, openInput(path, options.input));
-        const InputDescription& description = input->description();
-        for (const std::string& warning : description.warnings)
+        for (const std::string& warning : input->description().warnings)
             scan.warnings.push_back(cat(path, ": ", warning));
-        scan.pointCount += description.source.pointCount;
-        grids.push_back(description.grid);
-        schemas.push_back(description.schema);
         scan.inputs.emplace_back().input = std::move(input);
+    }
+    STIPPLE_TRY(crs, settleCrs(scan.inputs, options, scan.warnings));
+    scan.crs = crs;
+    std::vector<Grid> grids;
+    std::vector<Schema> schemas;
+    for (const ScannedInput& input : scan.inputs) {
+        scan.pointCount += input.description().source.pointCount;
+        grids.push_back(input.description().grid);
+        schemas.push_back(input.description().schema);
     }
     scan.grid = commonGrid(grids);
     CommonSchema common = commonSchema(schemas);
@@ -136,8 +244,6 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
         scan.inputs[i].toCloud = gridMap(grids[i], scan.grid);
         scan.inputs[i].attributeSources = common.sources[i];
     }
-    STIPPLE_TRY(crsOfAll, commonCrs(scan.inputs, options.crs, scan.warnings));
-    scan.crs = crsOfAll;
     reportMissingAttributes(scan, scan.warnings);
     describeGpsTime(scan);
     return scan;

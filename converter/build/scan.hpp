@@ -7,6 +7,7 @@
 #include "shared/format/cloud_metadata.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,17 @@ struct Scan {
 };
 
 struct ScanOptions {
-    std::string crs = {}; // "EPSG:n", for inputs that state none; empty: what the inputs state
+    // The cloud's CRS, as a user names it ("EPSG:n"): inputs that state another are reprojected to it, those
+    // that state none are taken to be in it. Empty: what the inputs state, which must then be the same.
+    std::string crs = {};
+    std::optional<Crs> target = {}; // the same, already known; goes before `crs`
     InputOptions input = {};
 };
 
 // Opens every input and reads what it says of itself. Errors name the file: those of openInput; given twice,
-// another CRS than the others.
+// another CRS than the others
+// (and none named in the options), a CRS that can't be reached by PROJ. Warnings say what was reprojected and
+// how exactly.
 Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions& options);
 
 // Lets the scanned points be read as points of another cloud (to compare with it). Attributes go by name;

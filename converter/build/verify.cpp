@@ -196,7 +196,10 @@ class Verification {
 
     Status compareWithInputs(const std::vector<std::string>& inputs, const CloudMetadata& metadata,
                              const PointStore& store, int threads) {
-        STIPPLE_TRY(scan, scanInputs(inputs, {}));
+        ScanOptions options;
+        if (metadata.crs.known())
+            options.target = metadata.crs; // as they were reprojected for the file
+        STIPPLE_TRY(scan, scanInputs(inputs, options));
         for (const std::string& name : mapOnto(scan, metadata.grid, metadata.schema))
             fault(cat("the inputs' attribute ", name, " is missing or of another type in the file"));
         STIPPLE_TRY(loaded, readPoints(scan, threads, stop_, progress_));

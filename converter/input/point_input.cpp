@@ -8,6 +8,7 @@ void ReadReport::add(const ReadReport& other) {
     notFinite += other.notFinite;
     outOfRange += other.outOfRange;
     invalid += other.invalid;
+    untransformable += other.untransformable;
     maxRounding = std::max(maxRounding, other.maxRounding);
 }
 

@@ -24,13 +24,14 @@ namespace stipple {
 
 // Points that a stream left out, by reason, and how far it had to move the others.
 struct ReadReport {
-    std::uint64_t notFinite = 0;  // a coordinate is NaN or infinite
-    std::uint64_t outOfRange = 0; // a coordinate is farther out than any grid could count
-    std::uint64_t invalid = 0;    // marked invalid by the file itself (PTX "0 0 0", E57 invalid state)
+    std::uint64_t notFinite = 0;       // a coordinate is NaN or infinite
+    std::uint64_t outOfRange = 0;      // a coordinate is farther out than any grid could count
+    std::uint64_t invalid = 0;         // marked invalid by the file itself (PTX "0 0 0", E57 invalid state)
+    std::uint64_t untransformable = 0; // PROJ can't bring it into the cloud's CRS
     double maxRounding = 0; // largest distance from a stated coordinate to the grid, world units, per axis
 
     void add(const ReadReport& other);
-    std::uint64_t dropped() const { return notFinite + outOfRange + invalid; }
+    std::uint64_t dropped() const { return notFinite + outOfRange + invalid + untransformable; }
 };
 
 // What the GPS times of an input count from (LAS: global encoding, bit 0).

@@ -104,8 +104,10 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("-o,--output", arguments->output,
                      "The file to write (default: in the current folder, named after the first input)");
     verb->add_option("--name", arguments->options.name, "Name of the cloud (default: that of the output)");
-    verb->add_option("--crs", arguments->options.crs,
-                     "Coordinate reference system of inputs that state none, for example EPSG:26910");
+    verb->add_option(
+        "--crs", arguments->options.crs,
+        "Coordinate reference system of the cloud, for example EPSG:26910: inputs in another are "
+        "reprojected, inputs that state none are taken to be in it");
     verb->add_option("--threads", arguments->options.threads, "Threads to use (default: one for each core)")
         ->check(CLI::Range(1, 1024));
     verb->add_flag("--force", arguments->options.force,

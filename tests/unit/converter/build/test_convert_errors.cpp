@@ -118,10 +118,6 @@ TEST_CASE("inputs in two coordinate systems are refused with both names", "[conv
                  ErrorCode::invalidArgument, "b.las", "UTM zone 11N");
     ConvertResult result = convertOrFail({folder / "a.las"}, folder / "out.stipple");
     CHECK(result.metadata.crs.epsg == 32610);
-    auto contradicted =
-        convertFiles({folder / "a.las"}, folder / "c.stipple", {.crs = "EPSG:32611"}, noProgress);
-    REQUIRE_FALSE(contradicted.ok());
-    CHECK(contradicted.error().sentence().find("--crs") != std::string::npos);
 }
 
 TEST_CASE("a CRS can be set where none is stated", "[convert]") {
