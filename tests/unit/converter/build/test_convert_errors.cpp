@@ -55,14 +55,14 @@ TEST_CASE("a LAS file cut inside its header is refused, one cut inside its point
     CHECK_FALSE(result.warnings.empty());
 }
 
-TEST_CASE("LAZ is refused for now", "[convert]") {
+TEST_CASE("points that claim to be compressed, without the record that says how, are refused", "[convert]") {
     TemporaryFolder folder;
     writeScan(surfaceScan(0, 10, 1), folder / "in.las");
     Bytes bytes = fileBytes(folder / "in.las");
     bytes[104] |= 0x80;
     writeText(folder / "in.laz", std::string(bytes.begin(), bytes.end()));
-    checkRefused(folder, {folder / "in.laz"}, folder / "out.stipple", ErrorCode::unsupported, "in.laz",
-                 "LAZ");
+    checkRefused(folder, {folder / "in.laz"}, folder / "out.stipple", ErrorCode::corrupt, "in.laz",
+                 "laszip encoded");
 }
 
 TEST_CASE("an output of value is never replaced", "[convert]") {
