@@ -5,6 +5,7 @@
 #include "shared/las/extra_bytes.hpp"
 #include "shared/las/header_block.hpp"
 #include "shared/las/las_records.hpp"
+#include "shared/las/laz/chunk_writer.hpp"
 #include "shared/las/record_codec.hpp"
 
 #include <algorithm>
@@ -158,6 +159,7 @@ class FileWriter final : public Writer {
     Bytes block_;
     std::vector<std::string> warnings_;
     std::unique_ptr<OutputFile> file_;
+    std::unique_ptr<laz::ChunkWriter> chunks_; // LAZ only
 };
 
 Status FileWriter::open(const std::string& path, const WriterOptions& options) {
@@ -184,11 +186,17 @@ Status FileWriter::open(const std::string& path, const WriterOptions& options) {
     header_.pointDataOffset = static_cast<std::uint32_t>(front.size());
     STIPPLE_TRY(file, OutputFile::create(path));
     file_ = std::move(file);
-    return file_->append(front);
+    STIPPLE_CHECK(file_->append(front));
+    if (!header_.compressed)
+        return {};
+    STIPPLE_TRY(chunks, laz::ChunkWriter::create(*file_, laz::laszipRecordFor(format, header_.recordLength)));
+    chunks_ = std::move(chunks);
+    return chunks_->begin();
 }
 
 void FileWriter::fillHeader(const WriterOptions& options) {
     header_.recordLength = static_cast<std::uint16_t>(plan_.layout.recordLength);
+    header_.compressed = options.compressed;
     header_.fileSourceId = options.fileSourceId;
     header_.globalEncoding = static_cast<std::uint16_t>(options.globalEncoding & ~wktBit);
     if (!options.wkt.empty() && header_.versionMinor >= 4)
@@ -221,6 +229,10 @@ Status FileWriter::placeRecords(const WriterOptions& options) {
     }
     for (const Vlr& vlr : options.vlrs)
         STIPPLE_CHECK(place(vlr));
+    if (options.compressed)
+        STIPPLE_CHECK(
+            place({std::string(records::laszip), records::laszipRecord, "how the points are compressed",
+                   encodeLaszipRecord(laz::laszipRecordFor(header_.pointFormat, header_.recordLength))}));
     return {};
 }
 
@@ -259,7 +271,9 @@ HeaderBlock FileWriter::headerBlock() const {
     block.headerSize = header_.headerSize;
     block.pointDataOffset = header_.pointDataOffset;
     block.vlrCount = static_cast<std::uint32_t>(normalVlrs_.size() + (plan_.described.empty() ? 0 : 1));
-    block.pointFormatByte = static_cast<std::uint8_t>(header_.pointFormat);
+    constexpr int compressedBit = 0x80;
+    block.pointFormatByte =
+        static_cast<std::uint8_t>(header_.pointFormat | (header_.compressed ? compressedBit : 0));
     block.recordLength = header_.recordLength;
     block.scale = header_.grid.scale;
     block.offset = header_.grid.offset;
@@ -323,7 +337,8 @@ Status FileWriter::write(const PointBatch& batch) {
         Status packed = packRecords(plan_.layout, plan_.columns, schema_, batch, done, count, block_.data());
         if (!packed.ok())
             return packed.error().at(file_->path());
-        STIPPLE_CHECK(file_->append(ByteSpan(block_.data(), count * stride)));
+        ByteSpan records(block_.data(), count * stride);
+        STIPPLE_CHECK(chunks_ ? chunks_->write(records) : file_->append(records));
     }
     summarize(batch);
     failed_ = false;
@@ -363,6 +378,8 @@ Status FileWriter::finish() {
     if (failed_ || finished_)
         return invalid("the file is finished, or a write failed");
     finished_ = true;
+    if (chunks_)
+        STIPPLE_CHECK(chunks_->finish());
     if (!extendedVlrs_.empty())
         evlrOffset_ = file_->sizeBytes();
     for (const Vlr& vlr : extendedVlrs_) {
@@ -393,6 +410,7 @@ WriterOptions optionsLike(const Reader& reader) {
     options.versionMinor =
         header.pointFormat <= highestPointFormat(header.versionMinor) ? header.versionMinor : -1;
     options.expectedPoints = reader.pointCount();
+    options.compressed = header.compressed;
     options.wkt = wktRecord(header);
     for (const Vlr& vlr : header.vlrs)
         if (!vlr.omitted && !vlr.is(records::projection, records::wkt) &&

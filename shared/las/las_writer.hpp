@@ -1,6 +1,8 @@
-// Writes LAS files: point formats 0-10, LAS 1.0-1.4. The output gets its name only when finish() succeeds.
+// Writes LAS and LAZ files: point formats 0-10, LAS 1.0-1.4. The output gets its name only when finish()
+// succeeds.
 //
-// Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB).
+// Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB); for LAZ also the
+// compressed bytes of a chunk of 50,000 points, and its models (about 1 MB).
 #pragma once
 
 #include "shared/base/result.hpp"
@@ -25,8 +27,10 @@ struct WriterOptions {
     // records, or expectedPoints > 2^32 - 1
     int versionMinor = -1;
     std::uint64_t expectedPoints = 0; // 0: unknown
-    std::string wkt;                  // written as the OGC WKT record; empty: none
-    std::vector<Vlr> vlrs;            // further records, copied as they are (not: WKT, extra bytes, LAZ)
+    // LAZ: pointwise chunks of version 2 for formats 0-5, layered ones of version 3 from format 6 on.
+    bool compressed = false;
+    std::string wkt;       // written as the OGC WKT record; empty: none
+    std::vector<Vlr> vlrs; // further records, copied as they are (not: WKT, extra bytes, LAZ)
     std::string systemIdentifier = "stipple";
     std::string generatingSoftware = "stipple";
     std::uint16_t globalEncoding = 0; // the WKT bit is set by the writer
@@ -35,8 +39,8 @@ struct WriterOptions {
     std::uint16_t creationDay = 0, creationYear = 0; // 0: left open (same input, same bytes)
 };
 
-// Options that write a file like the one read: its grid, schema, format, version, records and identity.
-// Records whose data were left in the file (Vlr::omitted) are not among them.
+// Options that write a file like the one read: its grid, schema, format, version, records and identity,
+// compressed if it is. Records whose data were left in the file (Vlr::omitted) are not among them.
 WriterOptions optionsLike(const Reader& reader);
 
 class Writer {
