@@ -49,28 +49,11 @@ class ArithmeticDecoder {
 
     template <unsigned Capacity, bool Fixed>
     STIPPLE_LAZ_INLINE unsigned decodeSymbol(AdaptiveModel<Capacity, Fixed>& model) {
-        using Model = AdaptiveModel<Capacity, Fixed>;
-        const std::uint32_t step = length_ >> Model::precision;
-        unsigned symbol = 0, end = model.symbols();
-        const unsigned last = end - 1;
-        // The quotient may be a little above 2^15 (the step was rounded down): the last symbol's.
-        const std::uint32_t scaled = value_ / step;
-        if constexpr (Model::mayHaveTable) {
-            if (model.hasTable()) {
-                const unsigned part = scaled >> model.tableShift();
-                symbol = model.table[part];
-                end = model.table[part + 1] + 1u;
-            }
-        }
-        while (end > symbol + 1) {
-            unsigned middle = (symbol + end) >> 1;
-            if (model.distribution[middle] > scaled)
-                end = middle;
-            else
-                symbol = middle;
-        }
+        const std::uint32_t step = length_ >> AdaptiveModel<Capacity, Fixed>::precision;
+        const unsigned symbol = model.find(value_ / step);
         const std::uint32_t low = model.distribution[symbol] * step;
-        const std::uint32_t high = symbol == last ? length_ : model.distribution[symbol + 1] * step;
+        const std::uint32_t high =
+            symbol + 1 == model.symbols() ? length_ : model.distribution[symbol + 1] * step;
         value_ -= low;
         length_ = high - low;
         renormalize();
@@ -114,10 +97,12 @@ class ArithmeticDecoder {
 
     // Takes in the bytes that bring the length to 2^24 or above again.
     STIPPLE_LAZ_INLINE void renormalize() {
-        while (length_ < minIntervalLength) {
-            value_ = (value_ << 8) | *at_++;
-            length_ <<= 8;
-        }
+        const unsigned bytes = static_cast<unsigned>(__builtin_clz(length_)) >> 3;
+        const unsigned bits = 8 * bytes;
+        const std::uint64_t wide = (static_cast<std::uint64_t>(value_) << 32) | loadBigEndian(at_);
+        value_ = static_cast<std::uint32_t>((wide << bits) >> 32);
+        length_ <<= bits;
+        at_ += bytes;
     }
 
     const std::uint8_t* at_ = nullptr;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 // The hot loops keep the coder's state in registers; that needs every step inlined.
 #if defined(__GNUC__)
@@ -55,8 +56,9 @@ struct BitModel {
 // compiling; otherwise init() says how many (2 … Capacity).
 //
 // distribution[s] is the probability of all symbols before s: at least one more for each symbol, so
-// no interval ever becomes empty. table[v >> tableShift] is the last symbol whose distribution begins
-// in an earlier part of the range than v's: where the search for v starts.
+// no interval ever becomes empty; behind the last symbol a value above any. table[v >> tableShift] is the
+// last symbol that begins at or before that part of the range: where the search for v starts. There are at
+// least twice as many parts as symbols, so it mostly ends there, too.
 template <unsigned Capacity, bool Fixed>
 class AdaptiveModel {
   public:
@@ -64,11 +66,7 @@ class AdaptiveModel {
     static constexpr std::uint32_t maxTotal = 1u << precision;
     static_assert(Capacity >= 2 && Capacity <= 2048);
 
-    // Without a table a handful of symbols is searched as fast.
-    static constexpr bool mayHaveTable = Capacity > 16;
-
     STIPPLE_LAZ_INLINE unsigned symbols() const { return Fixed ? Capacity : symbols_; }
-    STIPPLE_LAZ_INLINE bool hasTable() const { return symbols() > 16; }
     STIPPLE_LAZ_INLINE unsigned tableShift() const {
         return Fixed ? precision - tableBits(Capacity) : shift_;
     }
@@ -80,6 +78,7 @@ class AdaptiveModel {
         cycle_ = symbols;
         for (unsigned k = 0; k < symbols; ++k)
             count[k] = 1;
+        distribution[symbols] = aboveAll;
         update<true>();
         cycle_ = untilUpdate = (symbols + 6) >> 1;
     }
@@ -102,9 +101,8 @@ class AdaptiveModel {
             distribution[k] = static_cast<std::uint16_t>((scale * sum) >> (31 - precision));
             sum += count[k];
         }
-        if constexpr (ForDecoding && mayHaveTable)
-            if (hasTable())
-                buildTable();
+        if constexpr (ForDecoding)
+            buildTable();
         cycle_ = (5 * cycle_) >> 2;
         const std::uint32_t longest = (n + 6) << 3;
         if (cycle_ > longest)
@@ -112,34 +110,48 @@ class AdaptiveModel {
         untilUpdate = cycle_;
     }
 
-    std::array<std::uint16_t, Capacity> distribution;
-    std::array<std::uint16_t, Capacity> count; // at most maxTotal and a cycle, below 2^16
-    std::uint32_t untilUpdate;
+    // The last symbol that begins at or before `scaled`, a little above 2^15 at most.
+    STIPPLE_LAZ_INLINE unsigned find(std::uint32_t scaled) const {
+        unsigned symbol = table[scaled >> tableShift()];
+        while (distribution[symbol + 1] <= scaled)
+            ++symbol;
+        return symbol;
+    }
 
   private:
+    using Index = std::conditional_t<Capacity <= 256, std::uint8_t, std::uint16_t>;
+    static constexpr std::uint16_t aboveAll = 0xFFFF;
+    // A step that divides was rounded down from at least 2^9: the quotient is at most 2^15 + 63, so with
+    // parts of 64 or more it lies at most one part beyond the range.
+    static constexpr unsigned mostTableBits = precision - 6;
+
     static constexpr unsigned tableBits(unsigned symbols) {
         unsigned bits = 3;
-        while (symbols > 1u << (bits + 2))
+        while (1u << bits < 2 * symbols && bits < mostTableBits)
             ++bits;
         return bits;
     }
 
     void buildTable() {
-        const unsigned n = symbols(), size = 1u << (precision - tableShift());
-        unsigned s = 0;
-        table[0] = 0;
-        for (unsigned k = 0; k < n; ++k)
-            for (unsigned part = distribution[k] >> tableShift(); s < part;)
-                table[++s] = static_cast<std::uint16_t>(k - 1);
-        while (s <= size)
-            table[++s] = static_cast<std::uint16_t>(n - 1);
+        const unsigned n = symbols(), shift = tableShift(), size = 1u << (precision - shift);
+        unsigned part = 0;
+        for (unsigned k = 0; k + 1 < n; ++k)
+            for (unsigned next = distribution[k + 1]; part << shift < next; ++part)
+                table[part] = static_cast<Index>(k);
+        // And the part beyond the range.
+        for (; part <= size; ++part)
+            table[part] = static_cast<Index>(n - 1);
     }
 
+  public:
+    std::array<std::uint16_t, Capacity + 1> distribution;
+    std::array<std::uint16_t, Capacity> count; // at most maxTotal and a cycle, below 2^16
+    std::uint32_t untilUpdate;
+
+  private:
     std::uint32_t total_, cycle_;
     std::uint16_t symbols_, shift_;
-
-  public:
-    std::array<std::uint16_t, mayHaveTable ? (1u << tableBits(Capacity)) + 2 : 1> table;
+    std::array<Index, (1u << tableBits(Capacity)) + 1> table;
 };
 
 template <unsigned Symbols>
