@@ -1,7 +1,7 @@
 // Reads LAS and LAZ files: point formats 0-10, LAS 1.0-1.4, all that LASzip compresses. Safe on untrusted
 // bytes: memory is bounded by the batch size asked for and by what the file really holds, never by what it
 // claims. LAZ takes besides: 16 bytes a chunk for where they are, the compressed bytes of one chunk (or 4 MiB
-// of it), and about 1 MB of models.
+// of it), and about 2 MB of models.
 //
 // Thread: one at a time per reader. Several readers of one file, each with a source of its own, decode chunks
 // of LAZ in parallel: each enters at one of chunkStarts().

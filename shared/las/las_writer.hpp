@@ -2,7 +2,7 @@
 // succeeds.
 //
 // Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB); for LAZ also the
-// compressed bytes of a chunk of 50,000 points, and its models (about 1 MB).
+// compressed bytes of a chunk of 50,000 points, and its models (about 2 MB).
 #pragma once
 
 #include "shared/base/result.hpp"

@@ -1,6 +1,6 @@
 // Appends the points of a LAZ file: the place of the chunk table's offset, the chunks, the table.
 //
-// Memory: the compressed bytes of the chunk that is being written, and about 1 MB of models.
+// Memory: the compressed bytes of the chunk that is being written, and about 2 MB of models.
 #pragma once
 
 #include "shared/io/output_file.hpp"
