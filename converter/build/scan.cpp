@@ -113,7 +113,7 @@ std::string journeyText(const Journey& journey, const Crs& to) {
         text +=
             ", and without a shift between datums, as PROJ has none: points may lie metres to hundreds of "
             "metres off";
-    text += cat("; x and y are rounded to ", journey.coarsestStep, " ", to.unit, "; heights are ",
+    text += cat("; x and y are rounded by at most ", journey.coarsestStep / 2, " ", to.unit, "; heights are ",
                 facts.keepsHeights ? "kept" : "transformed, too");
     bool otherUnit = journey.from.unitMeters != to.unitMeters && journey.from.unitMeters > 0;
     if (facts.keepsHeights && otherUnit && journey.from.unitMeters != 1 && journey.from.vertical.empty())
@@ -231,13 +231,15 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
     STIPPLE_TRY(crs, settleCrs(scan.inputs, options, scan.warnings));
     scan.crs = crs;
     std::vector<Grid> grids;
+    std::vector<BoxI> boxes;
     std::vector<Schema> schemas;
     for (const ScannedInput& input : scan.inputs) {
         scan.pointCount += input.description().source.pointCount;
         grids.push_back(input.description().grid);
+        boxes.push_back(input.description().bounds);
         schemas.push_back(input.description().schema);
     }
-    scan.grid = commonGrid(grids);
+    scan.grid = commonGrid(grids, boxes);
     CommonSchema common = commonSchema(schemas);
     scan.schema = common.schema;
     for (std::size_t i = 0; i < scan.inputs.size(); ++i) {

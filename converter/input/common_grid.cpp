@@ -15,6 +15,7 @@ using Int128 = __int128;
 
 constexpr Int128 int128Limit = static_cast<Int128>(1) << 125;
 constexpr std::int64_t finestStepRatio = 1000;
+constexpr double mostSteps = 4503599627370496.0; // 2^52: the widest root cube
 
 // mantissa × 10^exponent
 struct Decimal {
@@ -92,8 +93,10 @@ Int128 greatestCommonDivisor(Int128 a, Int128 b) {
 double toDouble(Int128 mantissa, int exponent) {
     std::string digits;
     for (Int128 rest = mantissa; rest > 0; rest /= 10)
-        digits.insert(digits.begin(), static_cast<char>('0' + static_cast<int>(rest % 10)));
-    digits += "e" + std::to_string(exponent);
+        digits.push_back(static_cast<char>('0' + static_cast<int>(rest % 10)));
+    std::reverse(digits.begin(), digits.end());
+    digits += 'e';
+    digits += std::to_string(exponent);
     double value = 0;
     std::from_chars(digits.data(), digits.data() + digits.size(), value);
     return value;
@@ -118,12 +121,28 @@ std::optional<double> commonStep(const std::vector<double>& scales, const std::v
     return toDouble(step, common->exponent);
 }
 
+double tenTimes(double step) {
+    Decimal decimal = shortestDecimal(step);
+    return toDouble(decimal.mantissa, decimal.exponent + 1);
+}
+
+// How far the boxes reach on an axis, seen from the common offset; 0 without boxes.
+double extentFrom(double offset, int axis, const std::vector<Grid>& grids, const std::vector<BoxI>& boxes) {
+    double low = offset, high = offset;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (boxes[i].empty())
+            continue;
+        low = std::min(low, grids[i].toWorld(boxes[i].min)[axis]);
+        high = std::max(high, grids[i].toWorld(boxes[i].max)[axis]);
+    }
+    return high - low;
+}
+
 AxisMap axisMap(double fromScale, double fromOffset, double toScale, double toOffset) {
     AxisMap map;
     if (fromScale == toScale && fromOffset == toOffset)
         return map;
     auto common = toCommonExponent({fromScale, fromOffset, toScale, toOffset});
-    // Inputs hold 32-bit integers, so multiply × input stays under 2^62.
     constexpr Int128 multiplyLimit = static_cast<Int128>(1) << 30, addLimit = static_cast<Int128>(1) << 61;
     if (common) {
         const std::vector<Int128>& m = common->mantissas;
@@ -143,12 +162,17 @@ AxisMap axisMap(double fromScale, double fromOffset, double toScale, double toOf
 } // namespace
 
 std::int64_t AxisMap::toCloud(std::int64_t input) const {
-    if (exact)
-        return multiply * input + add;
     // Far outside what a root cube can hold; kept defined, and refused when the cube is laid.
-    constexpr double limit = 4e18;
+    constexpr std::int64_t limit = 4'000'000'000'000'000'000;
+    if (exact) {
+        std::int64_t product = 0, sum = 0;
+        if (__builtin_mul_overflow(multiply, input, &product) || __builtin_add_overflow(product, add, &sum))
+            return (input < 0) == (multiply > 0) ? -limit : limit;
+        return sum;
+    }
     double steps = std::round(factor * static_cast<double>(input) + shift);
-    return static_cast<std::int64_t>(std::clamp(steps, -limit, limit));
+    return static_cast<std::int64_t>(
+        std::clamp(steps, -static_cast<double>(limit), static_cast<double>(limit)));
 }
 
 double AxisMap::errorSteps(std::int64_t input) const {
@@ -157,7 +181,7 @@ double AxisMap::errorSteps(std::int64_t input) const {
     return std::abs(factor * static_cast<double>(input) + shift - static_cast<double>(toCloud(input)));
 }
 
-Grid commonGrid(const std::vector<Grid>& grids) {
+Grid commonGrid(const std::vector<Grid>& grids, const std::vector<BoxI>& boxes) {
     bool same = std::all_of(grids.begin(), grids.end(), [&](const Grid& grid) { return grid == grids[0]; });
     if (same)
         return grids[0];
@@ -169,8 +193,13 @@ Grid commonGrid(const std::vector<Grid>& grids) {
             offsets.push_back(grid.offset[axis]);
         }
         double finest = *std::min_element(scales.begin(), scales.end());
-        result.scale[axis] = commonStep(scales, offsets).value_or(finest);
         result.offset[axis] = *std::min_element(offsets.begin(), offsets.end());
+        result.scale[axis] = commonStep(scales, offsets).value_or(finest);
+        double extent = extentFrom(result.offset[axis], axis, grids, boxes);
+        if (extent / result.scale[axis] >= mostSteps)
+            result.scale[axis] = finest;
+        while (extent / result.scale[axis] >= mostSteps)
+            result.scale[axis] = tenTimes(result.scale[axis]);
     }
     return result;
 }

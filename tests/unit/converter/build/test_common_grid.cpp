@@ -1,6 +1,11 @@
 #include "converter/input/common_grid.hpp"
 
+#include "converter/input/float_grid.hpp"
+
 #include <catch2/catch.hpp>
+
+#include <cstdint>
+#include <limits>
 
 using namespace stipple;
 
@@ -64,4 +69,102 @@ TEST_CASE("each axis has a grid of its own", "[grid]") {
     Grid common = commonGrid({a, b});
     CHECK(common.scale == Vec3d{1e-7, 1e-7, 0.001});
     CHECK(gridMap(a, common).isExact());
+}
+
+TEST_CASE("three scales meet on the finest", "[grid]") {
+    std::vector<Grid> grids{uniform(0.001, 1000), uniform(0.01, 2000), uniform(0.0001, -500)};
+    Grid common = commonGrid(grids);
+    CHECK(common == uniform(0.0001, -500));
+    CHECK(gridMap(grids[0], common).toCloud({1, 2, 3}) == Vec3i{15000010, 15000020, 15000030});
+    CHECK(gridMap(grids[1], common).toCloud({-1, 0, 1}) == Vec3i{24999900, 25000000, 25000100});
+    CHECK(gridMap(grids[2], common).isIdentity());
+}
+
+TEST_CASE("feet and metres meet exactly where both are decimals", "[grid]") {
+    Grid metres = uniform(0.01, 0), feet = uniform(0.003048, 0); // 0.01 ft
+    Grid common = commonGrid({metres, feet});
+    CHECK(common.scale.x == 0.000008);
+    CHECK(gridMap(metres, common).toCloud({1, 1, 1}).x == 1250);
+    CHECK(gridMap(feet, common).toCloud({1, 1, 1}).x == 381);
+}
+
+TEST_CASE("US survey feet and metres meet on the finer scale, and the error is told", "[grid]") {
+    Grid metres = uniform(0.001, 0), feet = uniform(0.000304800609601, 0);
+    Grid common = commonGrid({metres, feet});
+    CHECK(common.scale.x == 0.000304800609601);
+    AxisMap axis = gridMap(metres, common).axes[0];
+    CHECK_FALSE(axis.exact);
+    double largest = 0;
+    for (std::int64_t i = 0; i < 1000; ++i) {
+        largest = std::max(largest, axis.errorSteps(i));
+        double moved = std::abs(0.000304800609601 * static_cast<double>(axis.toCloud(i)) -
+                                0.001 * static_cast<double>(i));
+        CHECK(moved == Approx(axis.errorSteps(i) * 0.000304800609601).margin(1e-12));
+    }
+    CHECK(largest > 0.49);
+    CHECK(largest <= 0.5);
+    CHECK(gridMap(feet, common).isExact());
+}
+
+TEST_CASE("the extremes of LAS's integers come through exactly", "[grid]") {
+    Grid fine = uniform(0.001, 0), coarse = uniform(0.01, 4500000);
+    Grid common = commonGrid({fine, coarse});
+    constexpr std::int64_t low = std::numeric_limits<std::int32_t>::min(),
+                           high = std::numeric_limits<std::int32_t>::max();
+    GridMap map = gridMap(coarse, common);
+    REQUIRE(map.isExact());
+    CHECK(map.toCloud({low, 0, high}) == Vec3i{10 * low + 4500000000, 4500000000, 10 * high + 4500000000});
+}
+
+TEST_CASE("a cloud 2^52 steps wide keeps its grid when a scan joins it", "[grid]") {
+    constexpr std::int64_t wide = (std::int64_t{1} << 52) - 1;
+    Grid cloud = uniform(1e-6, 0), scan = uniform(0.01, 100), finer = uniform(1e-9, 0);
+    BoxI cloudBox{{0, 0, 0}, {wide, wide, wide}}, scanBox{{0, 0, 0}, {5000, 5000, 5000}};
+    Grid common = commonGrid({cloud, scan}, {cloudBox, scanBox});
+    CHECK(common == cloud);
+    CHECK(gridMap(scan, common).toCloud({1, 1, 1}).x == 100010000);
+    CHECK(gridMap(cloud, common).isIdentity());
+    // A common grid of 1e-9 would be 2^62 steps wide: the finer scan is rounded.
+    common = commonGrid({cloud, finer}, {cloudBox, scanBox});
+    CHECK(common == cloud);
+    CHECK(gridMap(cloud, common).isIdentity());
+    AxisMap axis = gridMap(finer, common).axes[0];
+    CHECK_FALSE(axis.exact);
+    CHECK(axis.toCloud(1400) == 1);
+    CHECK(axis.errorSteps(1400) == Approx(0.4));
+    // Without knowing where points lie, the exact grid is taken.
+    CHECK(commonGrid({cloud, finer}).scale.x == 1e-9);
+}
+
+TEST_CASE("scans far from each other with fine grids fit one cloud", "[grid]") {
+    Grid here = uniform(1e-9, 0), there = uniform(1e-9, 2e7);
+    BoxI box{{0, 0, 0}, {2000000000, 2000000000, 2000000000}};
+    Grid common = commonGrid({here, there}, {box, box});
+    CHECK(common.scale.x == 1e-8); // 2e16 steps of 1e-9 are too many
+    for (const Grid& grid : {here, there})
+        for (int axis = 0; axis < 3; ++axis)
+            CHECK(gridMap(grid, common).toCloud(box.max)[axis] < std::int64_t{1} << 52);
+    CHECK(commonGrid({there, here}, {box, box}) == common);
+}
+
+TEST_CASE("integers that nothing can hold stay defined", "[grid]") {
+    AxisMap axis;
+    axis.multiply = 1000;
+    constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+    CHECK(axis.toCloud(most / 2) > std::int64_t{1} << 60);
+    CHECK(axis.toCloud(-most / 2) < -(std::int64_t{1} << 60));
+}
+
+TEST_CASE("grids of floating-point inputs meet those of LAS exactly", "[grid]") {
+    BoxD site;
+    site.extend(Vec3d{637012.5, 848900.25, 400});
+    site.extend(Vec3d{638000, 850000, 600});
+    Grid las{{0.01, 0.01, 0.001}, {600000, 800000, 0}};
+    for (Precision precision : {Precision{-1, 24}, Precision{-1, 53}, Precision{3, 53}}) {
+        Grid floats = floatGrid(site, precision);
+        Grid common = commonGrid({las, floats});
+        CAPTURE(floats.scale.x, floats.offset.x, common.scale.x);
+        CHECK(gridMap(las, common).isExact());
+        CHECK(gridMap(floats, common).isExact());
+    }
 }

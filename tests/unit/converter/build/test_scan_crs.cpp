@@ -66,7 +66,7 @@ TEST_CASE("--crs reprojects the inputs of other systems alone, and says how exac
                    "b.las: reprojected from WGS 84 / UTM zone 11N (EPSG:32611) to WGS 84 / UTM "
                    "zone 10N (EPSG:32610)"));
     CHECK(mentions(scan.warnings,
-                   "exact but for rounding; x and y are rounded to 0.01 metre; heights are kept"));
+                   "exact but for rounding; x and y are rounded by at most 0.005 metre; heights are kept"));
     CHECK(mentions(scan.warnings, "c.las: reprojected from NAD83"));
     CHECK(mentions(scan.warnings, " m, as PROJ states"));
     CHECK(mentions(scan.warnings, "d.las: no CRS stated; taken to be WGS 84 / UTM zone 10N"));
