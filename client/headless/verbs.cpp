@@ -1,5 +1,10 @@
 #include "client/headless/verbs.hpp"
 
+#ifdef HAVE_stipple_converter_verbs
+#include "client/headless/http_source.hpp"
+#include "converter/verbs/info_verb.hpp"
+#endif
+
 namespace stipple {
 // Defined by the parts; each adds one subcommand.
 #ifdef HAVE_stipple_synth_verbs
@@ -7,7 +12,6 @@ void addSynthVerb(CLI::App& program, cli::Action& action);
 #endif
 #ifdef HAVE_stipple_converter_verbs
 void addConvertVerb(CLI::App& program, cli::Action& action);
-void addInfoVerb(CLI::App& program, cli::Action& action);
 void addVerifyVerb(CLI::App& program, cli::Action& action);
 void addExportVerb(CLI::App& program, cli::Action& action);
 #endif
@@ -22,13 +26,21 @@ void addRenderVerb(CLI::App& program, cli::Action& action);
 
 namespace stipple::headless {
 
+#ifdef HAVE_stipple_converter_verbs
+namespace {
+void addInfo(CLI::App& program, cli::Action& action) {
+    addInfoVerb(program, action, openSource);
+}
+} // namespace
+#endif
+
 std::vector<AddVerb> allVerbs() {
     return {
 #ifdef HAVE_stipple_synth_verbs
         addSynthVerb,
 #endif
 #ifdef HAVE_stipple_converter_verbs
-        addConvertVerb, addInfoVerb, addVerifyVerb, addExportVerb,
+        addConvertVerb, addInfo,     addVerifyVerb, addExportVerb,
 #endif
 #ifdef HAVE_stipple_server_verbs
         addServeVerb,   addViewVerb,

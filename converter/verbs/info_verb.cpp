@@ -1,10 +1,13 @@
-// stipple info FILE
+// stipple info FILE|URL
+#include "converter/verbs/info_verb.hpp"
 #include "converter/build/describe.hpp"
+#include "converter/verbs/info_input.hpp"
 #include "converter/verbs/info_las.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/cli/verb.hpp"
 #include "shared/io/file_source.hpp"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -106,28 +109,48 @@ Status printCloudInfo(ByteSource& source, const InfoArguments& arguments) {
     return {};
 }
 
-Status printInfo(const InfoArguments& arguments) {
+bool isAddress(const std::string& text) {
+    return text.find("://") != std::string::npos;
+}
+
+// By content; an address can only be that of a cloud.
+Status printAny(const InfoArguments& arguments, SourceOpener openAddress) {
+    if (isAddress(arguments.file)) {
+        STIPPLE_TRY(source, openAddress(arguments.file));
+        return printCloudInfo(*source, arguments);
+    }
+    std::error_code ignored;
+    if (std::filesystem::is_directory(arguments.file, ignored))
+        return printInputInfo(arguments.file, arguments.json); // says that it is one
     STIPPLE_TRY(source, openFileSource(arguments.file));
-    STIPPLE_TRY(head, readNow(*source, {0, 4}));
-    bool isLas = std::string_view(reinterpret_cast<const char*>(head.data()), head.size()) == "LASF";
-    Status printed =
-        isLas ? printLasInfo(arguments.file, arguments.json) : printCloudInfo(*source, arguments);
+    STIPPLE_TRY(head, readNow(*source, {0, 5}));
+    std::string_view start(reinterpret_cast<const char*>(head.data()), head.size());
+    if (start.starts_with("LASF"))
+        return printLasInfo(arguments.file, arguments.json);
+    if (start == "\x89STPL")
+        return printCloudInfo(*source, arguments);
+    return printInputInfo(arguments.file, arguments.json);
+}
+
+Status printInfo(const InfoArguments& arguments, SourceOpener openAddress) {
+    Status printed = printAny(arguments, openAddress);
     if (!printed && printed.error().where.find(arguments.file) == std::string::npos)
         return printed.error().at(arguments.file);
     return printed;
 }
 } // namespace
 
-void addInfoVerb(CLI::App& program, cli::Action& action) {
+void addInfoVerb(CLI::App& program, cli::Action& action, SourceOpener openAddress) {
     auto arguments = std::make_shared<InfoArguments>();
-    CLI::App* verb = program.add_subcommand("info", "Describe a .stipple or LAS file");
-    verb->add_option("FILE", arguments->file, "The file")->required();
+    CLI::App* verb = program.add_subcommand("info", "Describe a scan or a cloud");
+    verb->add_option("FILE", arguments->file, "The file, or the address of a served .stipple file")
+        ->required();
     verb->add_flag("--full", arguments->full,
                    "Read every node of a .stipple file, to tell bytes of positions from bytes of colour");
     verb->add_flag("--json", arguments->json, "Print one JSON object");
-    verb->callback([arguments, &action] {
-        action = [arguments]() -> int {
-            Status printed = printInfo(*arguments);
+    verb->callback([arguments, openAddress, &action] {
+        action = [arguments, openAddress]() -> int {
+            Status printed = printInfo(*arguments, openAddress);
             return printed ? cli::success : cli::fail("info", printed.error());
         };
     });
