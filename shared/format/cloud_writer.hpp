@@ -1,14 +1,17 @@
 // Writes one `.stipple` file from finished nodes. Encoding a node is a pure function (encodeNode) that any
-// thread may run; the writer lays the blocks out and writes header, metadata and hierarchy around them.
+// thread may run; storeNode puts its blocks aside; assembleCloud lays them out and writes header, metadata
+// and hierarchy around them.
 #pragma once
 
 #include "shared/base/result.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_entry.hpp"
+#include "shared/io/scratch_file.hpp"
 #include "shared/points/point_batch.hpp"
 
 #include <memory>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 namespace stipple {
@@ -37,18 +40,45 @@ struct WrittenCloud {
     std::uint64_t nodes = 0, chunks = 0;
 };
 
+// What is remembered of a node until the file is assembled; its bytes wait in a scratch file.
+struct StoredNode {
+    NodeKey key;
+    std::uint32_t pointCount = 0;
+    std::array<std::uint32_t, strataCount> strataBytes{};
+    std::vector<std::uint32_t> attributeBytes;
+    std::uint64_t offset = 0; // of stratum 0 in the scratch file; the other blocks follow
+
+    std::uint64_t sizeBytes() const;
+};
+
+// Appends a node's blocks to `blocks`. Thread: any. invalidArgument for a node deeper than maxLevel or with
+// blocks that are not padded.
+Result<StoredNode> storeNode(const EncodedNode& node, ScratchFile& blocks);
+
+// Writes the file: orders the nodes (any order, each key once; those without points need not be there, the
+// tree above a node is completed), lays them out and copies their blocks. `path` gets its name when all is
+// written. `metadata` is final here (statistics, hash, counts).
+Result<WrittenCloud> assembleCloud(const std::string& path, const CloudMetadata& metadata,
+                                   const std::vector<StoredNode>& nodes, const ScratchFile& blocks);
+
+// Both in one, for clouds that are made in one go.
 class CloudWriter {
   public:
-    // `path` gets its name only when finish() succeeds; until then the blocks wait in a temporary file
-    // beside it.
+    // Until finish() the blocks wait in a temporary file beside `path`.
     static Result<std::unique_ptr<CloudWriter>> create(const std::string& path);
-    virtual ~CloudWriter() = default; // without finish(): removes what was written
 
-    // Takes a node, in any order, each key once; nodes without points need not be added (the tree above
-    // an added node is completed). Thread: one at a time.
-    virtual Status add(const EncodedNode& node) = 0;
-    // Orders and writes everything. `metadata` is final here (statistics, hash, counts).
-    virtual Result<WrittenCloud> finish(const CloudMetadata& metadata) = 0;
+    // Thread: one at a time.
+    Status add(const EncodedNode& node);
+    Result<WrittenCloud> finish(const CloudMetadata& metadata);
+
+  private:
+    CloudWriter(std::string path, std::unique_ptr<ScratchFile> blocks)
+        : path_(std::move(path)), blocks_(std::move(blocks)) {}
+
+    std::string path_;
+    std::unique_ptr<ScratchFile> blocks_; // null once the file is finished
+    std::unordered_set<NodeKey, NodeKeyHash> added_;
+    std::vector<StoredNode> stored_;
 };
 
 } // namespace stipple
