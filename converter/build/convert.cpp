@@ -1,19 +1,20 @@
 #include "converter/build/convert.hpp"
 
+#include "converter/build/build.hpp"
 #include "converter/build/output_check.hpp"
-#include "converter/build/pack.hpp"
 #include "converter/build/parallel.hpp"
-#include "converter/build/sample.hpp"
 #include "converter/build/scan.hpp"
-#include "converter/build/spacing.hpp"
 #include "converter/build/tile.hpp"
+#include "converter/build/work_folder.hpp"
 #include "shared/base/text.hpp"
+#include "shared/codec/checksum.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <new>
 #include <tuple>
+#include <unistd.h>
 
 namespace stipple {
 
@@ -66,23 +67,23 @@ void appendSources(std::vector<SourceFile>& sources, const InputDescription& inp
         sources.insert(sources.end(), input.madeOf.begin(), input.madeOf.end());
 }
 
-CloudMetadata describe(const Scan& scan, const Tiles& tiles, const Sampled& sampled, const Spacing& spacing,
-                       const std::string& output, const ConvertOptions& options) {
+// What is known of the cloud once every point was read.
+CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& output,
+                       const ConvertOptions& options) {
     CloudMetadata metadata;
     metadata.name = options.name.empty() ? fs::path(output).stem().string() : options.name;
     metadata.crs = scan.crs;
     metadata.grid = scan.grid;
-    metadata.rootCube = tiles.rootCube;
-    metadata.spacing = sampled.rootSpacing;
-    metadata.bounds = tiles.points.bounds;
-    metadata.pointCount = scan.pointCount;
+    metadata.rootCube = tiles.grid.cube;
+    metadata.bounds = tiles.sums.bounds;
+    metadata.pointCount = tiles.sums.points;
     metadata.schema = scan.schema;
-    metadata.pictureColour = pictureColour(tiles.points.colour, scan.schema);
+    metadata.pictureColour = pictureColour(tiles.sums.colour, scan.schema);
     auto fits8Bit = [](std::uint16_t max) { return max <= 255; };
     metadata.colourIs8Bit =
         metadata.pictureColour == PictureColour::rgb &&
-        std::all_of(tiles.points.colour.rgbMax.begin(), tiles.points.colour.rgbMax.end(), fits8Bit);
-    metadata.pointHash = tiles.points.hash.hex();
+        std::all_of(tiles.sums.colour.rgbMax.begin(), tiles.sums.colour.rgbMax.end(), fits8Bit);
+    metadata.pointHash = tiles.sums.hash.hex();
     for (const ScannedInput& input : scan.inputs)
         appendSources(metadata.sources, input.description());
     std::sort(metadata.sources.begin(), metadata.sources.end(), [](const SourceFile& a, const SourceFile& b) {
@@ -90,46 +91,176 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const Sampled& samp
                std::tie(b.name, b.format, b.pointCount, b.sizeBytes);
     });
     metadata.tool = "stipple " STIPPLE_VERSION;
-    metadata.options = optionsText(options, spacing);
     return metadata;
 }
 
-Result<ConvertResult> runPhases(const std::vector<std::string>& inputs, const std::string& output,
-                                const ConvertOptions& options, const ConvertProgress& progress) {
-    int threads = threadCount(options.threads);
-    ConvertResult result;
-    result.output = output;
-    Stopwatch watch;
-
-    STIPPLE_TRY(scan, scanInputs(inputs, ScanOptions{options.crs, {}}));
-    result.warnings = scan.warnings;
-    result.seconds.scan = watch.lap();
-
-    STIPPLE_TRY(points, readPoints(scan, threads, options.stop, progress));
-    result.warnings.insert(result.warnings.end(), points.warnings.begin(), points.warnings.end());
-    STIPPLE_TRY(tiles, tile(std::move(points), leafCapacity, threads, options.stop));
-    result.seconds.tile = watch.lap();
-
-    STIPPLE_TRY(spacing, chooseSpacing(tiles, distanceMetric(scan.grid, scan.crs), threads, options.stop));
-    STIPPLE_TRY(sampled, sample(tiles, spacing, threads, options.stop, progress));
-    result.seconds.sample = watch.lap();
-
-    result.metadata = describe(scan, tiles, sampled, spacing, output, options);
-    STIPPLE_TRY(written, pack(tiles, sampled, result.metadata, output, threads, options.stop, progress));
-    result.written = written;
-    result.seconds.pack = watch.lap();
-    return result;
+// What decides the bytes of the output: a checkpoint goes on only if all of it is the same.
+std::string identityOf(const Scan& scan, const std::string& output, const ConvertOptions& options) {
+    std::string text = cat("stipple " STIPPLE_VERSION "\noutput ", fs::absolute(output).string(), "\nname ",
+                           options.name, "\ncrs ", options.crs, "\ncolumns ", options.input.columns,
+                           "\nscale ", options.input.scale, "\n");
+    std::vector<std::string> inputs;
+    for (const ScannedInput& input : scan.inputs) {
+        const std::string& path = input.description().path;
+        std::error_code ignored;
+        auto written = fs::last_write_time(path, ignored).time_since_epoch().count();
+        inputs.push_back(cat("input ", fs::absolute(path).string(), " ", input.description().source.sizeBytes,
+                             " ", static_cast<std::int64_t>(written), "\n"));
+    }
+    // Not sorted: how far a checkpoint has read is a number in the order of the inputs.
+    for (const std::string& input : inputs)
+        text += input;
+    return text;
 }
+
+std::string workFolderPath(const std::string& output, const ConvertOptions& options) {
+    constexpr const char* ending = ".work";
+    if (options.temp.empty())
+        return output + ending;
+    std::string absolute = fs::absolute(output).string();
+    char number[17];
+    std::snprintf(number, sizeof number, "%016llx",
+                  static_cast<unsigned long long>(xxh64(
+                      ByteSpan(reinterpret_cast<const std::uint8_t*>(absolute.data()), absolute.size()))));
+    return (fs::path(options.temp) / (fs::path(output).filename().string() + "." + number + ending)).string();
+}
+
+std::uint64_t memoryFor(const ConvertOptions& options) {
+    if (options.memoryBytes > 0)
+        return options.memoryBytes;
+    auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
+    auto pageBytes = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
+    return std::max(ConvertOptions::leastMemoryBytes, pages * pageBytes / 4);
+}
+
+// Points go to disk if they need more than the memory for them; said, and refused, before it starts.
+Status checkDisk(const Scan& scan, std::uint64_t memoryBytes, const WorkFolder& folder,
+                 ConvertResult& result) {
+    std::uint64_t rows = scan.pointCount * (scan.schema.bytesPerPoint() + sizeof(Vec3<std::int32_t>));
+    result.temporaryBytes = rows > memoryBytes ? rows : 0;
+    std::uint64_t free = folder.freeBytes();
+    if (result.temporaryBytes > free && !folder.resumes())
+        return Error{ErrorCode::writeFailed,
+                     cat("the points need ", rows >> 20, " MiB for the time being, but the disk has ",
+                         free >> 20, " MiB free"),
+                     folder.path(), "free space, name another folder with --temp, or allow more --memory"};
+    return {};
+}
+
+Error ofOutput(Error error, const std::string& output) {
+    if (error.code == ErrorCode::ioFailed || error.code == ErrorCode::notFound)
+        error.code = ErrorCode::writeFailed;
+    return error.where.find(output) == std::string::npos ? error.at(output) : error;
+}
+
+class Conversion {
+  public:
+    Conversion(const std::vector<std::string>& inputs, const std::string& output,
+               const ConvertOptions& options, const ConvertProgress& progress)
+        : inputs_(inputs), output_(output), options_(options), progress_(progress),
+          threads_(threadCount(options.threads)), memoryBytes_(memoryFor(options)) {}
+
+    Result<ConvertResult> run() {
+        result_.output = output_;
+        ScanOptions scanning;
+        scanning.crs = options_.crs;
+        scanning.input = options_.input;
+        STIPPLE_TRY(scan, scanInputs(inputs_, scanning));
+        result_.warnings = scan.warnings;
+        result_.seconds.scan = watch_.lap();
+        auto folder = WorkFolder::open(workFolderPath(output_, options_), identityOf(scan, output_, options_),
+                                       result_.warnings);
+        if (!folder)
+            return folder.error();
+        result_.resumed = (*folder)->resumes();
+        Status done = runIn(scan, **folder);
+        if (!done) {
+            keepIfUseful(done.error(), **folder);
+            return describeEnd(done.error(), **folder);
+        }
+        return std::move(result_);
+    }
+
+  private:
+    Status runIn(const Scan& scan, WorkFolder& folder) {
+        // Half of the memory for points that wait, half for those at work.
+        STIPPLE_CHECK(checkDisk(scan, memoryBytes_ / 2, folder, result_));
+        STIPPLE_TRY(tiles, tile(scan, {threads_, memoryBytes_ / 2, options_.stop}, folder, progress_));
+        onDisk_ = tiles.onDisk;
+        for (const std::string& warning : tiles.sums.warnings(scan))
+            result_.warnings.push_back(warning);
+        result_.seconds.tile = watch_.lap();
+
+        STIPPLE_TRY(blocks, folder.scratch("blocks", folder.resumes()));
+        STIPPLE_TRY(journal, Journal::open(folder, folder.resumes()));
+        result_.metadata = describe(scan, tiles, output_, options_);
+        STIPPLE_TRY(built, build(tiles, result_.metadata, {threads_, memoryBytes_ / 2, options_.stop},
+                                 *blocks, journal, progress_));
+        result_.temporaryBytes = tiles.pool->spilledBytes();
+        result_.seconds.sample = watch_.lap();
+        return pack(tiles, built, *blocks);
+    }
+
+    Status pack(const Tiles& tiles, const Built& built, const ScratchFile& blocks) {
+        CloudMetadata& metadata = result_.metadata;
+        if (built.hash != tiles.sums.hash || built.points != metadata.pointCount)
+            return Error{ErrorCode::corrupt,
+                         cat("the points packed are not the points read (", built.points, " of ",
+                             metadata.pointCount, ", hash ", built.hash.hex(), ", read ",
+                             tiles.sums.hash.hex(), ")"),
+                         output_, "this is a fault of stipple or of the memory; nothing was written"};
+        for (const PartialStatistics& attribute : built.statistics)
+            metadata.statistics.push_back(attribute.finish());
+        metadata.spacing = built.spacing.world(metadata.rootCube.bits);
+        metadata.options = optionsText(options_, built.spacing);
+        auto written = assembleCloud(output_, metadata, built.nodes, blocks);
+        if (!written)
+            return ofOutput(written.error(), output_);
+        result_.written = *written;
+        result_.seconds.pack = watch_.lap();
+        return {};
+    }
+
+    // What a longer run has done stays when it could go on: the disk was full or failed, or somebody stopped
+    // it.
+    void keepIfUseful(const Error& error, WorkFolder& folder) const {
+        bool mayGoOn = error.code == ErrorCode::cancelled || error.code == ErrorCode::writeFailed ||
+                       error.code == ErrorCode::ioFailed;
+        if (mayGoOn && (onDisk_ || folder.load("tiles").ok()))
+            folder.keep();
+        else
+            kept_ = false;
+    }
+
+    Error describeEnd(Error error, const WorkFolder& folder) const {
+        if (kept_)
+            error.advice +=
+                cat(error.advice.empty() ? "" : "; ", "what was done so far is kept in ", folder.path(),
+                    ": the same command goes on from there, or remove that folder");
+        return error;
+    }
+
+    const std::vector<std::string>& inputs_;
+    const std::string& output_;
+    const ConvertOptions& options_;
+    const ConvertProgress& progress_;
+    const int threads_;
+    const std::uint64_t memoryBytes_;
+    Stopwatch watch_;
+    ConvertResult result_;
+    bool onDisk_ = false;
+    mutable bool kept_ = true;
+};
 } // namespace
 
 Result<ConvertResult> convertFiles(const std::vector<std::string>& inputs, const std::string& output,
                                    const ConvertOptions& options, const ConvertProgress& progress) {
     STIPPLE_CHECK(checkOutput(inputs, output, options.force, cloudMagic));
     try {
-        return runPhases(inputs, output, options, progress);
+        return Conversion(inputs, output, options, progress).run();
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::limitExceeded, "there is not enough memory", "",
-                     "convert fewer inputs at once, or on a machine with more memory"};
+                     "allow less with --memory, or use fewer threads"};
     }
 }
 

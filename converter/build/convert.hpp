@@ -1,14 +1,16 @@
 // Scans in, one `.stipple` file out. The phases, each a function with plain structs between them:
 //
 //   scan    headers → one grid, one schema, one CRS (scan.hpp)
-//   tile    points → memory, in Morton order; an octree over that order (tile.hpp)
-//   sample  bottom-up, each point to exactly one node (sample.hpp)
-//   pack    nodes → encoded blocks, statistics, the file (pack.hpp)
+//   tile    points → cells of the octree, in memory or on disk (tile.hpp)
+//   sample  subtree by subtree, bottom-up: each point to exactly one node, each node encoded (build.hpp)
+//   pack    nodes in their order → the file (cloud_writer.hpp)
 //
-// The bytes depend on the points and the options alone: not on the order of the inputs, not on the number
-// of threads. All points are held in memory (about twice their size in a LAS file).
+// The bytes depend on the points and the options alone: not on the order of the inputs, the number of
+// threads or the memory allowed. What is done is kept in a folder beside the output (work_folder.hpp): killed
+// at any moment, the same call goes on and ends with the same bytes.
 #pragma once
 
+#include "converter/input/open.hpp"
 #include "shared/base/result.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/cloud_writer.hpp"
@@ -24,7 +26,13 @@ namespace stipple {
 struct ConvertOptions {
     std::string name = {}; // of the cloud; empty: the output's file name without its extension
     std::string crs = {};  // of the cloud, "EPSG:n" (ScanOptions::crs); empty: what the inputs state
-    int threads = 0;       // 0: one for each core
+    InputOptions input = {};
+    int threads = 0; // 0: one for each core
+    // For points, at least leastMemoryBytes; the process has up to 200 MB besides. 0: a quarter of the
+    // machine's.
+    std::uint64_t memoryBytes = 0;
+    static constexpr std::uint64_t leastMemoryBytes = std::uint64_t{1} << 28;
+    std::string temp = {}; // folder for what does not fit memory, and checkpoints; empty: beside the output
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;
     const std::atomic<bool>* stop = nullptr; // once true, the conversion ends with `cancelled`
@@ -43,11 +51,13 @@ struct ConvertResult {
     std::string output;
     CloudMetadata metadata;
     WrittenCloud written;
+    std::uint64_t temporaryBytes = 0; // of points that went to disk for the time being
+    bool resumed = false;             // an earlier run's work was taken up
     PhaseSeconds seconds;
     std::vector<std::string> warnings; // one sentence each
 };
 
-// Converts LAS files. Errors: what the inputs are at fault for as they are; what the output is at fault for
+// Errors: what the inputs are at fault for as they are; what the output is at fault for
 // as writeFailed. Nothing is left behind on failure; an older file of that name stays as it was.
 Result<ConvertResult> convertFiles(const std::vector<std::string>& inputs, const std::string& output,
                                    const ConvertOptions& options, const ConvertProgress& progress);

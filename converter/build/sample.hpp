@@ -8,23 +8,33 @@
 // Points are visited in bit-reversed Morton order, block by block, which spreads them evenly. Nodes of one
 // level are worked on in eight rounds, by the parity of their coordinates: nodes of one round do not touch,
 // and a later round keeps its distance from what earlier rounds took near the border. So the minimum distance
-// holds across borders too, and the outcome does not depend on the number of threads.
+// holds across borders too, and the outcome does not depend on the number of threads. A subtree keeps the
+// same distance from neighbouring subtrees that were sampled before it.
 #pragma once
 
 #include "converter/build/spacing.hpp"
-#include "converter/build/tile.hpp"
+#include "converter/build/subtree.hpp"
 
+#include <atomic>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace stipple {
 
+// Sample points of a subtree's nodes that lie near the subtree's own faces.
+using Borders = std::unordered_map<NodeKey, std::vector<Vec3i>, NodeKeyHash>;
+
 struct Sampled {
-    double rootSpacing = 0; // world units
-    // Parallel to Tiles::nodes: what each keeps, as ranks in Tiles::order, rising. May be empty.
+    // Parallel to Subtree::nodes(): what each keeps, as ranks, rising. May be empty. The first is the sample
+    // of the subtree's root, which the nodes above may take from.
     std::vector<std::vector<std::uint32_t>> kept;
+    Borders borders;
 };
 
-Result<Sampled> sample(const Tiles& tiles, const Spacing& spacing, int threads, const std::atomic<bool>* stop,
-                       const ConvertProgress& progress);
+// `neighbours`: of the touching subtrees that were sampled before.
+Result<Sampled> sample(const Subtree& subtree, const Spacing& spacing,
+                       std::span<const Borders* const> neighbours, int threads,
+                       const std::atomic<bool>* stop);
 
 } // namespace stipple

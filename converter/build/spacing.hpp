@@ -1,8 +1,11 @@
 // How far apart the points of inner nodes are kept, and how that distance is measured.
 #pragma once
 
-#include "converter/build/tile.hpp"
+#include "converter/build/subtree.hpp"
 #include "shared/format/cloud_metadata.hpp"
+
+#include <array>
+#include <vector>
 
 namespace stipple {
 
@@ -19,17 +22,30 @@ DistanceMetric distanceMetric(const Grid& grid, const Crs& crs);
 // The minimum distance in a node of level `level` is `unit` × sqrt(2^(2 × nodeBits - density)): a node is
 // 2^(density / 2) minimum distances wide.
 struct Spacing {
+    static constexpr int densest = 16;
     DistanceMetric metric;
-    int density = 16; // 2 to 16
+    int density = densest; // 2 to 16
 
     double squaredSteps(int nodeBits) const; // the square of the distance, in weighted steps
     double world(int nodeBits) const;        // never more than what sampling keeps
 };
 
 // The densest spacing (nodes 2 to 256 distances wide) at which inner nodes hold their target on average: 256
-// on surfaces, less where points fill a volume. Estimated from the number of cells of that size that points
-// lie in.
-Result<Spacing> chooseSpacing(const Tiles& tiles, const DistanceMetric& metric, int threads,
-                              const std::atomic<bool>* stop);
+// on surfaces, less where points fill a volume. Estimated, over the subtrees that are added, from the number
+// of cells of that size that points lie in.
+class SpacingEstimate {
+  public:
+    explicit SpacingEstimate(const DistanceMetric& metric);
+    void add(const Subtree& subtree);
+    void add(const SpacingEstimate& other);
+    Spacing choose() const;
+
+    // The octree cells d levels below a node that hold points, for d = 0, 1, …
+    using CellCounts = std::array<double, Spacing::densest / 2 + 1>;
+
+  private:
+    DistanceMetric metric_;
+    std::vector<CellCounts> nodes_; // of inner nodes
+};
 
 } // namespace stipple

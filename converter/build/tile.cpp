@@ -1,53 +1,358 @@
 #include "converter/build/tile.hpp"
 
-#include "converter/build/morton_order.hpp"
+#include "converter/build/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <mutex>
 
 namespace stipple {
 
 namespace {
-// Which child of a node of `level` holds `p`.
-int childIndex(const RootCube& cube, int level, Vec3i p) {
-    int shift = cube.nodeBits(level) - 1;
-    return static_cast<int>(((p.x - cube.min.x) >> shift & 1) | ((p.y - cube.min.y) >> shift & 1) << 1 |
-                            ((p.z - cube.min.z) >> shift & 1) << 2);
-}
+constexpr const char* recordName = "tiles";
+constexpr std::uint64_t pointsPerRound = std::uint64_t{1} << 23; // between two checkpoints
+constexpr std::uint64_t pointsPerCell = std::uint64_t{1} << 17;  // aimed at, on surfaces
+constexpr int deepestCellLevel = CellGrid::deepest;
 
-bool mustSplit(const Tiles& tiles, const TileNode& node, std::uint32_t capacity) {
-    if (tiles.rootCube.nodeBits(node.key.level) > maxNodeBits)
-        return true; // too wide to hold points
-    if (node.count <= capacity || node.key.level >= std::min(tiles.rootCube.bits, maxLevel))
-        return false;
-    // The first and the last in Morton order are the same: all are, and no cut separates them.
-    return tiles.position(node.first) != tiles.position(node.end() - 1);
-}
+// Two zero bits between the bits of a cell's coordinate under its node.
+constexpr auto spreadBits = [] {
+    std::array<std::uint32_t, std::size_t{1} << deepestCellLevel> table{};
+    for (std::uint32_t value = 0; value < table.size(); ++value)
+        for (int bit = 0; bit < deepestCellLevel; ++bit)
+            table[value] |= (value >> bit & 1u) << (3 * bit);
+    return table;
+}();
 
-void split(Tiles& tiles, std::size_t index) {
-    TileNode node = tiles.nodes[index];
-    node.isLeaf = false;
-    std::uint32_t at = node.first;
-    for (int child = 0; child < 8; ++child) {
-        // The order has child 0's points first, then child 1's …
-        auto begin = tiles.order.begin() + at, end = tiles.order.begin() + node.end();
-        auto cut = std::partition_point(begin, end, [&](std::uint32_t point) {
-            return childIndex(tiles.rootCube, node.key.level, tiles.points.store.position(point)) <= child;
-        });
-        auto count = static_cast<std::uint32_t>(cut - begin);
-        if (count > 0) {
-            node.children[static_cast<std::size_t>(child)] = static_cast<std::int32_t>(tiles.nodes.size());
-            TileNode below;
-            below.key = node.key.child(child);
-            below.first = at;
-            below.count = count;
-            tiles.nodes.push_back(below);
-        }
-        at += count;
+// One part of one input.
+struct Read {
+    std::size_t input = 0, part = 0;
+    std::uint64_t points = 0;
+};
+
+std::vector<Read> readsOf(const Scan& scan) {
+    std::vector<Read> reads;
+    for (std::size_t i = 0; i < scan.inputs.size(); ++i) {
+        const std::vector<InputPart>& parts = scan.inputs[i].input->parts();
+        for (std::size_t p = 0; p < parts.size(); ++p)
+            reads.push_back({i, p, parts[p].points});
     }
-    tiles.nodes[index] = node;
+    return reads;
 }
+
+// The cloud's bounds as the inputs state them; empty if one of them does not.
+BoxI statedBounds(const Scan& scan) {
+    BoxI bounds;
+    for (const ScannedInput& input : scan.inputs) {
+        const InputDescription& description = input.description();
+        if (description.source.pointCount == 0)
+            continue;
+        if (description.bounds.empty())
+            return {};
+        bounds.extend(input.toCloud.toCloud(description.bounds.min));
+        bounds.extend(input.toCloud.toCloud(description.bounds.max));
+    }
+    return bounds;
+}
+
+int cellLevel(const RootCube& cube, std::uint64_t points) {
+    int level = 0; // a surface meets 4^level cells
+    while (level < std::min(deepestCellLevel, cube.bits) && points >> (2 * level) > pointsPerCell)
+        ++level;
+    return level;
+}
+
+// What one thread works with.
+struct Worker {
+    PointBatch raw, mapped;
+    PointSums sums;
+    // Dealing a batch: which of its points go to which cell.
+    std::vector<std::uint32_t> slotOfCell, cellOfPoint, starts, indices;
+    std::vector<std::size_t> cells; // that the batch meets
+    std::vector<std::uint8_t> rows;
+};
+
+class Tiling {
+  public:
+    Tiling(const Scan& scan, const TileOptions& options, WorkFolder& folder, const ConvertProgress& progress)
+        : scan_(scan), options_(options), folder_(folder), progress_(progress), reads_(readsOf(scan)) {}
+
+    Result<Tiles> run() {
+        STIPPLE_TRY(resumed, resume());
+        if (!resumed) {
+            BoxI stated = statedBounds(scan_);
+            if (stated.empty() || !rootCubeOf(stated).ok()) {
+                STIPPLE_CHECK(measure());
+                stated = tiles_.sums.bounds;
+            }
+            STIPPLE_CHECK(begin(stated));
+        }
+        STIPPLE_CHECK(readAll());
+        if (misfit_) {
+            // Points where the headers did not say: now their bounds are known.
+            BoxI measured = tiles_.sums.bounds;
+            STIPPLE_CHECK(begin(measured));
+            STIPPLE_CHECK(readAll());
+        }
+        STIPPLE_CHECK(fitCube());
+        if (tiles_.pool->spilledBytes() > 0 && !tiles_.onDisk)
+            STIPPLE_CHECK(save(true));
+        return std::move(tiles_);
+    }
+
+  private:
+    // Starts over, for points in `bounds`.
+    Status begin(const BoxI& bounds) {
+        STIPPLE_TRY(cube, rootCubeOf(bounds));
+        tiles_.cells.reset();
+        tiles_.pool.reset();
+        tiles_.file.reset();
+        STIPPLE_TRY(file, folder_.scratch("points", false));
+        tiles_.file = std::move(file);
+        tiles_.sums = PointSums(scan_.inputs.size());
+        layOut(bounds, {cube, cellLevel(cube, scan_.pointCount)});
+        nextRead_ = 0;
+        done_ = 0;
+        misfit_ = false;
+        return {};
+    }
+
+    void layOut(const BoxI& bounds, const CellGrid& grid) {
+        layoutBounds_ = bounds;
+        tiles_.layout = RowLayout(scan_.schema, bounds);
+        tiles_.grid = grid;
+        tiles_.pool = std::make_unique<RowPool>(options_.memoryBytes, tiles_.file.get());
+        tiles_.cells = std::make_unique<RowStore>(*tiles_.pool, tiles_.layout.rowBytes(), grid.cells());
+    }
+
+    // Reads everything for its bounds alone.
+    Status measure() {
+        measuring_ = true;
+        tiles_.sums = PointSums(scan_.inputs.size());
+        Status read = readAll();
+        measuring_ = false;
+        nextRead_ = 0;
+        done_ = 0;
+        return read;
+    }
+
+    Status readAll() {
+        std::vector<Worker> workers(static_cast<std::size_t>(options_.threads));
+        for (Worker& worker : workers)
+            worker.slotOfCell.assign(measuring_ ? 0 : tiles_.grid.cells(), 0);
+        while (nextRead_ < reads_.size()) {
+            std::size_t first = nextRead_, end = first;
+            for (std::uint64_t points = 0; end < reads_.size() && points < pointsPerRound; ++end)
+                points += reads_[end].points;
+            for (Worker& worker : workers)
+                worker.sums = PointSums(scan_.inputs.size());
+            STIPPLE_CHECK(
+                parallelFor(end - first, options_.threads, options_.stop, [&](std::size_t i, int worker) {
+                    return readPart(reads_[first + i], workers[static_cast<std::size_t>(worker)]);
+                }));
+            for (const Worker& worker : workers)
+                tiles_.sums.add(worker.sums);
+            nextRead_ = end;
+            if (!measuring_ && !misfit_ && tiles_.pool->spilledBytes() > 0 && end < reads_.size())
+                STIPPLE_CHECK(save(false));
+        }
+        return {};
+    }
+
+    Status readPart(const Read& read, Worker& worker) {
+        const PointInput& input = *scan_.inputs[read.input].input;
+        STIPPLE_TRY(stream, input.openPart(read.part));
+        std::uint64_t points = 0;
+        for (;;) {
+            STIPPLE_CHECK(stream->next(worker.raw));
+            if (worker.raw.size() == 0)
+                break;
+            points += worker.raw.size();
+            if (points > read.points)
+                return Error{ErrorCode::changed, "more points came than were counted when it was opened",
+                             input.description().path, "convert again when the file is complete"};
+            const PointBatch& batch = toCloud(scan_, read.input, worker.raw, worker.mapped, worker.sums);
+            if (!measuring_ && !misfit_) {
+                worker.sums.hash.add(scan_.schema, batch);
+                STIPPLE_CHECK(deal(batch, worker));
+            }
+            report(batch.size());
+        }
+        worker.sums.report.add(stream->report());
+        if (points < read.points && stream->report().dropped() == 0)
+            return Error{ErrorCode::changed,
+                         cat(read.points - points, " points fewer came than were counted when it was opened"),
+                         input.description().path, "convert again when the file is complete"};
+        return {};
+    }
+
+    void report(std::uint64_t points) {
+        std::lock_guard lock(progressMutex_);
+        done_ += points;
+        tiles_.rowsRead += points;
+        progress_(measuring_ ? "measure" : "tile", done_, scan_.pointCount);
+    }
+
+    // The batch's points as rows, cell by cell, to the store.
+    Status deal(const PointBatch& batch, Worker& worker) {
+        worker.cells.clear();
+        worker.cellOfPoint.resize(batch.size());
+        worker.starts.assign(1, 0);
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            Vec3i p = batch.positions[i];
+            if (!tiles_.layout.holds(p)) {
+                misfit_ = true;
+                return clearSlots(worker);
+            }
+            std::size_t cell = tiles_.grid.cellOf(p);
+            std::uint32_t& slot = worker.slotOfCell[cell];
+            if (slot == 0) {
+                worker.cells.push_back(cell);
+                slot = static_cast<std::uint32_t>(worker.cells.size());
+                worker.starts.push_back(0);
+            }
+            worker.cellOfPoint[i] = slot;
+            ++worker.starts[slot];
+        }
+        for (std::size_t s = 1; s < worker.starts.size(); ++s)
+            worker.starts[s] += worker.starts[s - 1];
+        // starts[s] is the end of slot s, and counts down to its beginning.
+        worker.indices.resize(batch.size());
+        for (std::size_t i = batch.size(); i-- > 0;)
+            worker.indices[--worker.starts[worker.cellOfPoint[i]]] = static_cast<std::uint32_t>(i);
+        std::size_t rowBytes = tiles_.layout.rowBytes();
+        worker.rows.resize(batch.size() * rowBytes);
+        tiles_.layout.pack(batch, worker.indices, worker.rows.data());
+        for (std::size_t s = 1; s <= worker.cells.size(); ++s) {
+            std::size_t begin = worker.starts[s],
+                        end = s < worker.cells.size() ? worker.starts[s + 1] : batch.size();
+            STIPPLE_CHECK(tiles_.cells->append(worker.cells[s - 1], worker.rows.data() + begin * rowBytes,
+                                               end - begin));
+        }
+        return clearSlots(worker);
+    }
+
+    static Status clearSlots(Worker& worker) {
+        for (std::size_t cell : worker.cells)
+            worker.slotOfCell[cell] = 0;
+        return {};
+    }
+
+    // Deals again if the points' own cube is not the one that the headers stated.
+    Status fitCube() {
+        STIPPLE_TRY(cube, rootCubeOf(tiles_.sums.bounds));
+        if (cube == tiles_.grid.cube)
+            return {};
+        CellGrid grid{cube, cellLevel(cube, tiles_.sums.points)};
+        auto cells = std::make_unique<RowStore>(*tiles_.pool, tiles_.layout.rowBytes(), grid.cells());
+        std::size_t rowBytes = tiles_.layout.rowBytes();
+        auto deal = [&](const std::uint8_t* rows, std::size_t count) -> Status {
+            for (std::size_t i = 0, end = 0; i < count; i = end) {
+                std::size_t to = grid.cellOf(tiles_.layout.position(rows + i * rowBytes));
+                for (end = i + 1; end < count; ++end)
+                    if (grid.cellOf(tiles_.layout.position(rows + end * rowBytes)) != to)
+                        break;
+                STIPPLE_CHECK(cells->append(to, rows + i * rowBytes, end - i));
+            }
+            return {};
+        };
+        STIPPLE_CHECK(
+            parallelFor(tiles_.cells->cells(), options_.threads, options_.stop,
+                        [&](std::size_t cell, int) { return tiles_.cells->drain(cell, false, deal); }));
+        // What the old cells have on disk is what a crash would go on from until the new ones are saved.
+        std::swap(tiles_.cells, cells);
+        tiles_.grid = grid;
+        tiles_.onDisk = false;
+        if (tiles_.pool->spilledBytes() > 0)
+            STIPPLE_CHECK(save(true));
+        for (std::size_t cell = 0; cell < cells->cells(); ++cell)
+            cells->forget(cell);
+        return {};
+    }
+
+    Status save(bool complete) {
+        STIPPLE_CHECK(tiles_.cells->saveAll());
+        ByteWriter record;
+        record.write<std::uint8_t>(complete);
+        record.write<std::uint64_t>(nextRead_);
+        record.write(layoutBounds_.min);
+        record.write(layoutBounds_.max);
+        record.write(tiles_.grid.cube.min);
+        record.write(tiles_.grid.cube.bits);
+        record.write(tiles_.grid.level);
+        record.write(tiles_.file->end());
+        tiles_.sums.save(record);
+        tiles_.cells->describe(record);
+        STIPPLE_CHECK(folder_.save(recordName, record.bytes()));
+        tiles_.onDisk = complete;
+        return {};
+    }
+
+    // Takes up an earlier run's points. False if there are none, or they are damaged.
+    Result<bool> resume() {
+        auto record = folder_.load(recordName);
+        if (!record.ok())
+            return false;
+        ByteReader from(*record);
+        bool complete = from.read<std::uint8_t>() != 0;
+        std::uint64_t reads = from.read<std::uint64_t>();
+        BoxI bounds;
+        bounds.min = from.read<Vec3i>();
+        bounds.max = from.read<Vec3i>();
+        CellGrid grid;
+        grid.cube.min = from.read<Vec3i>();
+        grid.cube.bits = from.read<int>();
+        grid.level = from.read<int>();
+        std::uint64_t end = from.read<std::uint64_t>();
+        tiles_.sums = PointSums(scan_.inputs.size());
+        if (!tiles_.sums.load(from) || grid.level < 0 || grid.level > deepestCellLevel ||
+            reads > reads_.size())
+            return false;
+        STIPPLE_TRY(file, folder_.scratch("points", true));
+        tiles_.file = std::move(file);
+        tiles_.file->setEnd(end);
+        layOut(bounds, grid);
+        if (!tiles_.cells->restore(from))
+            return false;
+        nextRead_ = static_cast<std::size_t>(reads);
+        done_ = tiles_.sums.points;
+        tiles_.onDisk = complete;
+        return true;
+    }
+
+    const Scan& scan_;
+    const TileOptions& options_;
+    WorkFolder& folder_;
+    const ConvertProgress& progress_;
+    const std::vector<Read> reads_;
+    Tiles tiles_;
+    BoxI layoutBounds_;
+    std::size_t nextRead_ = 0; // of reads_; all before it are in the cells
+    bool measuring_ = false;
+    std::atomic<bool> misfit_{false}; // a point lay where rows can't hold it
+    std::mutex progressMutex_;
+    std::uint64_t done_ = 0;
+};
 } // namespace
+
+std::size_t CellGrid::cellOf(Vec3i p) const {
+    std::size_t cell = 0;
+    const int bits = level - under.level, shift = cube.nodeBits(level);
+    const Vec3i corner = cube.nodeMin(under);
+    const std::int64_t last = (std::int64_t{1} << bits) - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        std::int64_t at = std::clamp<std::int64_t>((p[axis] - corner[axis]) >> shift, 0, last);
+        cell |= std::size_t{spreadBits[static_cast<std::size_t>(at)]} << axis;
+    }
+    return cell;
+}
+
+NodeKey CellGrid::keyOf(std::size_t cell) const {
+    NodeKey key = under;
+    for (int depth = level - under.level; depth-- > 0;)
+        key = key.child(static_cast<int>(cell >> (3 * depth) & 7));
+    return key;
+}
 
 Result<RootCube> rootCubeOf(const BoxI& bounds) {
     RootCube cube;
@@ -68,22 +373,9 @@ Result<RootCube> rootCubeOf(const BoxI& bounds) {
     return cube;
 }
 
-Result<Tiles> tile(LoadedPoints points, std::uint32_t capacity, int threads, const std::atomic<bool>* stop) {
-    Tiles tiles;
-    tiles.points = std::move(points);
-    STIPPLE_TRY(cube, rootCubeOf(tiles.points.bounds));
-    tiles.rootCube = cube;
-    STIPPLE_TRY(order, mortonOrder(tiles.points.store, cube, threads, stop));
-    tiles.order = std::move(order);
-    if (tiles.order.empty())
-        return tiles;
-    TileNode root;
-    root.count = static_cast<std::uint32_t>(tiles.order.size());
-    tiles.nodes.push_back(root);
-    for (std::size_t i = 0; i < tiles.nodes.size(); ++i)
-        if (mustSplit(tiles, tiles.nodes[i], capacity))
-            split(tiles, i);
-    return tiles;
+Result<Tiles> tile(const Scan& scan, const TileOptions& options, WorkFolder& folder,
+                   const ConvertProgress& progress) {
+    return Tiling(scan, options, folder, progress).run();
 }
 
 } // namespace stipple

@@ -1,41 +1,55 @@
-// Phase 2: every point has its place. The points in memory, their Morton order, and the octree over it: a
-// node's points are a range of the order.
+// Phase 2: every point to a cell of the octree, in memory or, where that does not suffice, on disk.
+//
+// One pass over the inputs: points are dealt into cells of a cube around what the headers state. Where a
+// header lied, that cube is not the one of the points; then what was dealt out is dealt again (or, if points
+// lay so far out that rows could not hold them, read again). So what follows depends on the points alone.
 #pragma once
 
-#include "converter/build/read_points.hpp"
+#include "converter/build/convert.hpp"
+#include "converter/build/point_sums.hpp"
+#include "converter/build/row_layout.hpp"
+#include "converter/build/row_store.hpp"
+#include "converter/build/work_folder.hpp"
 #include "shared/geometry/node_key.hpp"
 
-#include <array>
-
 namespace stipple {
-
-// A node with more points than this is split, if it can be. Sampling moves up to about half of a leaf's
-// points to its parent, so leaves end with some 10,000 to 60,000 points.
-inline constexpr std::uint32_t leafCapacity = 65536;
-
-struct TileNode {
-    NodeKey key;
-    std::uint32_t first = 0, count = 0;                                   // range of Tiles::order
-    std::array<std::int32_t, 8> children{-1, -1, -1, -1, -1, -1, -1, -1}; // indices into Tiles::nodes
-    bool isLeaf = true;
-
-    std::uint32_t end() const { return first + count; }
-};
-
-struct Tiles {
-    LoadedPoints points;
-    RootCube rootCube;
-    std::vector<std::uint32_t> order; // of all points (morton_order.hpp)
-    std::vector<TileNode> nodes;      // breadth-first; nodes[0] is the root; none for an empty cloud
-
-    Vec3i position(std::uint32_t rank) const { return points.store.position(order[rank]); }
-    void prefetch(std::uint32_t rank) const { points.store.prefetch(order[rank]); }
-};
 
 // The smallest cube of 2^bits steps at the lowest corner of `bounds` that holds them. outOfRange if that
 // takes more than maxRootBits.
 Result<RootCube> rootCubeOf(const BoxI& bounds);
 
-Result<Tiles> tile(LoadedPoints points, std::uint32_t capacity, int threads, const std::atomic<bool>* stop);
+// A cell is the octree node of `level` in `cube`; cells are numbered by Morton code, x lowest.
+struct CellGrid {
+    static constexpr int deepest = 6; // level - under.level is at most this
+
+    RootCube cube;
+    int level = 0;
+    NodeKey under{}; // the cells are those of this node's descendants
+
+    std::size_t cells() const { return std::size_t{1} << (3 * (level - under.level)); }
+    // Points outside the cube belong to the nearest cell.
+    std::size_t cellOf(Vec3i p) const;
+    NodeKey keyOf(std::size_t cell) const;
+};
+
+struct Tiles {
+    RowLayout layout;
+    CellGrid grid; // over the points' own cube
+    PointSums sums;
+    std::unique_ptr<ScratchFile> file;
+    std::unique_ptr<RowPool> pool;
+    std::unique_ptr<RowStore> cells;
+    std::uint64_t rowsRead = 0; // points read, more than sums.points if inputs were read twice
+    bool onDisk = false;        // a checkpoint of all points exists
+};
+
+struct TileOptions {
+    int threads = 1;
+    std::uint64_t memoryBytes = 0; // for points; see RowPool
+    const std::atomic<bool>* stop = nullptr;
+};
+
+Result<Tiles> tile(const Scan& scan, const TileOptions& options, WorkFolder& folder,
+                   const ConvertProgress& progress);
 
 } // namespace stipple

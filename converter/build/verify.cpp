@@ -203,10 +203,10 @@ class Verification {
         for (const std::string& name : mapOnto(scan, metadata.grid, metadata.schema))
             fault(cat("the inputs' attribute ", name, " is missing or of another type in the file"));
         STIPPLE_TRY(loaded, readPoints(scan, threads, stop_, progress_));
-        if (loaded.maxGridError > 0)
+        if (loaded.sums.maxGridError > 0)
             report_.warnings.push_back(
                 cat("compared on the file's grid, which holds the inputs' positions to within ",
-                    loaded.maxGridError));
+                    loaded.sums.maxGridError));
         STIPPLE_TRY(comparison,
                     comparePoints(store, loaded.store, metadata.grid, metadata.schema, threads, stop_));
         report_.comparison = std::move(comparison);

@@ -13,12 +13,12 @@ struct KeyedIndex {
     std::uint32_t index;
 };
 
-// Sorts by the low `bits` bits of the key; there are fewer than 2^32 items.
-inline void radixSort(std::vector<KeyedIndex>& items, int bits) {
+// Sorts by `bits` bits of the key from bit `lowest` on; there are fewer than 2^32 items.
+inline void radixSort(std::vector<KeyedIndex>& items, int bits, int lowest = 0) {
     constexpr int digitBits = 11;
     constexpr std::size_t digits = std::size_t{1} << digitBits;
     std::vector<KeyedIndex> other(items.size());
-    for (int shift = 0; shift < bits; shift += digitBits) {
+    for (int shift = lowest; shift < lowest + bits; shift += digitBits) {
         auto digit = [shift](const KeyedIndex& item) {
             return static_cast<std::size_t>(item.key >> shift) & (digits - 1);
         };

@@ -19,7 +19,7 @@ Comparison compareLas(const std::string& a, const std::string& b) {
          pointsB = readPoints(*scanB, 1, nullptr, noProgress);
     REQUIRE(pointsA.ok());
     REQUIRE(pointsB.ok());
-    CHECK(pointsB->maxGridError == 0);
+    CHECK(pointsB->sums.maxGridError == 0);
     auto comparison = comparePoints(pointsA->store, pointsB->store, scanA->grid, scanA->schema, 1, nullptr);
     REQUIRE(comparison.ok());
     return *comparison;

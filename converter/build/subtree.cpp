@@ -1,0 +1,166 @@
+#include "converter/build/subtree.hpp"
+
+#include "converter/build/morton_order.hpp"
+#include "shared/codec/radix_sort.hpp"
+
+#include <algorithm>
+
+namespace stipple {
+
+namespace {
+constexpr int keyLevels = 21;  // levels of the octree that a 64-bit key holds
+constexpr int sortedBits = 33; // of the key, by radix: three passes; few points share them
+
+// The lower 21 bits of `value`, two zero bits between them.
+std::uint64_t spread(std::uint64_t value) {
+    value &= 0x1FFFFF;
+    value = (value | value << 32) & 0x1F00000000FFFF;
+    value = (value | value << 16) & 0x1F0000FF0000FF;
+    value = (value | value << 8) & 0x100F00F00F00F00F;
+    value = (value | value << 4) & 0x10C30C30C30C30C3;
+    value = (value | value << 2) & 0x1249249249249249;
+    return value;
+}
+
+std::uint64_t mortonKey(Vec3i p, int shift) {
+    return spread(static_cast<std::uint64_t>(p.x >> shift)) |
+           spread(static_cast<std::uint64_t>(p.y >> shift)) << 1 |
+           spread(static_cast<std::uint64_t>(p.z >> shift)) << 2;
+}
+
+// Which child of a node of `level` holds `p`.
+int childIndex(const RootCube& cube, int level, Vec3i p) {
+    int shift = cube.nodeBits(level) - 1;
+    return static_cast<int>(((p.x - cube.min.x) >> shift & 1) | ((p.y - cube.min.y) >> shift & 1) << 1 |
+                            ((p.z - cube.min.z) >> shift & 1) << 2);
+}
+
+// Sorts rows by key, then by what the key does not hold.
+class RowSorter {
+  public:
+    RowSorter(const RowLayout& layout, const RootCube& cube, NodeKey key, const std::uint8_t* rows,
+              std::size_t count)
+        : layout_(layout), corner_(cube.nodeMin(key)), bits_(cube.nodeBits(key.level)),
+          lowBits_(std::max(0, bits_ - keyLevels)), rows_(rows), items_(count) {}
+
+    void sort() {
+        const int keyBits = 3 * (bits_ - lowBits_), shift = std::max(0, keyBits - sortedBits);
+        for (std::size_t i = 0; i < items_.size(); ++i)
+            items_[i] = {mortonKey(relative(i), lowBits_), static_cast<std::uint32_t>(i)};
+        radixSort(items_, keyBits - shift, shift);
+        for (std::size_t i = 0, end = 0; i < items_.size(); i = end) {
+            for (end = i + 1; end < items_.size() && items_[end].key >> shift == items_[i].key >> shift;)
+                ++end;
+            if (end - i > 1)
+                sortRun(i, end);
+        }
+    }
+
+    const std::vector<KeyedIndex>& items() const { return items_; }
+
+  private:
+    const std::uint8_t* row(std::size_t index) const { return rows_ + index * layout_.rowBytes(); }
+    Vec3i relative(std::size_t index) const { return layout_.position(row(index)) - corner_; }
+
+    void sortRun(std::size_t begin, std::size_t end) {
+        std::sort(items_.begin() + static_cast<std::ptrdiff_t>(begin),
+                  items_.begin() + static_cast<std::ptrdiff_t>(end),
+                  [this](const KeyedIndex& a, const KeyedIndex& b) {
+                      return a.key != b.key ? a.key < b.key : comesBefore(a.index, b.index);
+                  });
+    }
+
+    bool comesBefore(std::uint32_t a, std::uint32_t b) const {
+        if (lowBits_ > 0)
+            if (int order = compareMorton(relative(a), relative(b)); order != 0)
+                return order < 0;
+        return std::memcmp(layout_.attributes(row(a)), layout_.attributes(row(b)), layout_.attributeBytes()) <
+               0;
+    }
+
+    const RowLayout& layout_;
+    const Vec3i corner_;
+    const int bits_, lowBits_; // of coordinates in the node; those that keys leave out
+    const std::uint8_t* rows_;
+    std::vector<KeyedIndex> items_;
+};
+} // namespace
+
+Subtree::Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key,
+                 std::unique_ptr<std::uint8_t[]> rows, std::size_t count)
+    : layout_(&layout), cube_(cube), key_(key), rows_(std::move(rows)),
+      count_(static_cast<std::uint32_t>(count)) {
+    sort();
+}
+
+void Subtree::sort() {
+    constexpr std::size_t ahead = 24;
+    RowSorter sorter(*layout_, cube_, key_, rows_.get(), count_);
+    sorter.sort();
+    const std::vector<KeyedIndex>& items = sorter.items();
+    const std::size_t rowBytes = layout_->rowBytes();
+    auto sorted = std::make_unique_for_overwrite<std::uint8_t[]>(count_ * rowBytes);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        __builtin_prefetch(rows_.get() + items[std::min(i + ahead, items.size() - 1)].index * rowBytes);
+        std::memcpy(sorted.get() + i * rowBytes, rows_.get() + items[i].index * rowBytes, rowBytes);
+    }
+    rows_ = std::move(sorted);
+}
+
+void Subtree::splitByCount(std::uint32_t capacity) {
+    split([&](const SubtreeNode& node) {
+        if (cube_.nodeBits(node.key.level) > maxNodeBits)
+            return true; // too wide to hold points
+        if (node.count <= capacity || node.key.level >= std::min(cube_.bits, maxLevel))
+            return false;
+        // The first and the last in Morton order are the same: all are, and no cut separates them.
+        return position(node.first) != position(node.end() - 1);
+    });
+}
+
+void Subtree::splitTo(const NodeKeys& leaves) {
+    split([&](const SubtreeNode& node) { return !leaves.contains(node.key); });
+}
+
+template <class MustSplit>
+void Subtree::split(MustSplit mustSplit) {
+    nodes_.clear();
+    if (count_ == 0)
+        return;
+    SubtreeNode root;
+    root.key = key_;
+    root.count = count_;
+    nodes_.push_back(root);
+    for (std::size_t i = 0; i < nodes_.size(); ++i)
+        if (mustSplit(nodes_[i]))
+            splitNode(i);
+}
+
+void Subtree::splitNode(std::size_t index) {
+    SubtreeNode node = nodes_[index];
+    node.isLeaf = false;
+    std::uint32_t at = node.first;
+    for (int child = 0; child < 8; ++child) {
+        // The order has child 0's points first, then child 1's …
+        std::uint32_t begin = at, end = node.end();
+        while (begin < end) {
+            std::uint32_t middle = begin + (end - begin) / 2;
+            if (childIndex(cube_, node.key.level, position(middle)) <= child)
+                begin = middle + 1;
+            else
+                end = middle;
+        }
+        if (begin > at) {
+            node.children[static_cast<std::size_t>(child)] = static_cast<std::int32_t>(nodes_.size());
+            SubtreeNode below;
+            below.key = node.key.child(child);
+            below.first = at;
+            below.count = begin - at;
+            nodes_.push_back(below);
+        }
+        at = begin;
+    }
+    nodes_[index] = node;
+}
+
+} // namespace stipple
