@@ -110,11 +110,11 @@ Status LayeredDecoder::decodeRun(std::uint8_t* records, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i)
             std::copy(first_.begin(), first_.end(), records + i * layout_.recordLength);
     const PointRun<std::uint8_t> run{records, layout_.recordLength, count, infos_.data()};
-    point_.position.code(streams_[0], run, infos_.data());
+    codeRun(streams_[0], point_.position, run);
     STIPPLE_CHECK(check(0));
     point_.forEachFurther(layout_, [&](unsigned i, std::uint32_t, auto& layer) {
         if (streams_[i].end != nullptr)
-            layer.code(streams_[i], run);
+            codeRun(streams_[i], layer, run);
     });
     for (unsigned i = 1; i < streams_.size(); ++i)
         STIPPLE_CHECK(check(i));

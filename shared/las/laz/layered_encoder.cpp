@@ -68,16 +68,15 @@ void LayeredEncoder::startLayers() {
 
 void LayeredEncoder::encodeRun(const std::uint8_t* records, std::size_t count) {
     const PointRun<const std::uint8_t> run{records, layout_.recordLength, count, infos_.data()};
-    auto withStream = [&](unsigned i, std::size_t maxBytes, auto&& code) {
-        streams_[i].ensureRoom(count * maxBytes);
+    auto code = [&](unsigned i, auto& layer) {
+        streams_[i].ensureRoom(count * layer.maxBytes);
         LayerWriter writer{streams_[i].encoder};
-        code(writer);
+        codeRun(writer, layer, run);
         streams_[i].encoder = writer.coder;
     };
-    withStream(0, PositionLayer::maxBytes,
-               [&](LayerWriter& writer) { point_.position.code(writer, run, infos_.data()); });
+    code(0, point_.position);
     point_.forEachFurther(layout_, [&](unsigned i, std::uint32_t, auto& layer) {
-        withStream(i, layer.maxBytes, [&](LayerWriter& writer) { layer.code(writer, run); });
+        code(i, layer);
         if (!changed_[i])
             changed_[i] = anyDiffers(run, fields_[i]);
     });

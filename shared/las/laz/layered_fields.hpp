@@ -17,19 +17,17 @@ class HeightLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.choose(point.channel());
-            auto* field = record + offsetBytes;
-            std::int32_t value = 0;
-            if constexpr (Stream::writing)
-                value = loadLe<std::int32_t>(field);
-            std::int32_t& predicted = state.lastOfLevel[point.level()];
-            value = local.integer(state.heights, predicted, value, point.heightContext());
-            predicted = last = value;
-            if constexpr (!Stream::writing)
-                storeLe(field, value);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.choose(point.channel());
+        auto* field = record + offsetBytes;
+        std::int32_t value = 0;
+        if constexpr (Stream::writing)
+            value = loadLe<std::int32_t>(field);
+        std::int32_t& predicted = state.lastOfLevel[point.level()];
+        value = stream.integer(state.heights, predicted, value, point.heightContext());
+        predicted = last = value;
+        if constexpr (!Stream::writing)
+            storeLe(field, value);
     }
 
   private:
@@ -55,17 +53,15 @@ class SymbolLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.choose(point.channel());
-            unsigned value = 0;
-            if constexpr (Stream::writing)
-                value = Format::load(record);
-            value = local.symbol(state.models[Format::context(last, point)], value);
-            last = static_cast<std::uint8_t>(value);
-            if constexpr (!Stream::writing)
-                Format::store(record, last);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.choose(point.channel());
+        unsigned value = 0;
+        if constexpr (Stream::writing)
+            value = Format::load(record);
+        value = stream.symbol(state.models[Format::context(last, point)], value);
+        last = static_cast<std::uint8_t>(value);
+        if constexpr (!Stream::writing)
+            Format::store(record, last);
     }
 
   private:
@@ -124,19 +120,17 @@ class IntensityLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.choose(point.channel());
-            auto* field = record + offsetBytes;
-            std::int32_t value = 0;
-            if constexpr (Stream::writing)
-                value = loadLe<std::uint16_t>(field);
-            std::uint16_t& predicted = state.lastOfKind[point.returns() << 1 | point.gpsTimeChanged()];
-            value = local.integer(state.intensities, predicted, value, point.returns());
-            predicted = last = static_cast<std::uint16_t>(value);
-            if constexpr (!Stream::writing)
-                storeLe(field, last);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.choose(point.channel());
+        auto* field = record + offsetBytes;
+        std::int32_t value = 0;
+        if constexpr (Stream::writing)
+            value = loadLe<std::uint16_t>(field);
+        std::uint16_t& predicted = state.lastOfKind[point.returns() << 1 | point.gpsTimeChanged()];
+        value = stream.integer(state.intensities, predicted, value, point.returns());
+        predicted = last = static_cast<std::uint16_t>(value);
+        if constexpr (!Stream::writing)
+            storeLe(field, last);
     }
 
   private:
@@ -164,19 +158,17 @@ class ChangeLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.choose(point.channel());
-            auto* field = record + Format::offsetBytes;
-            if (Format::changed(point)) {
-                std::int32_t value = 0;
-                if constexpr (Stream::writing)
-                    value = loadLe<Value>(field);
-                last = static_cast<Value>(local.integer(state.values, last, value, Format::context(point)));
-            }
-            if constexpr (!Stream::writing)
-                storeLe(field, last);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.choose(point.channel());
+        auto* field = record + Format::offsetBytes;
+        if (Format::changed(point)) {
+            std::int32_t value = 0;
+            if constexpr (Stream::writing)
+                value = loadLe<Value>(field);
+            last = static_cast<Value>(stream.integer(state.values, last, value, Format::context(point)));
+        }
+        if constexpr (!Stream::writing)
+            storeLe(field, last);
     }
 
   private:

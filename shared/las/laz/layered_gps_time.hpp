@@ -176,21 +176,19 @@ class GpsTimeLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.choose(point.channel());
-            auto* field = record + offsetBytes;
-            if constexpr (Stream::writing) {
-                if (point.gpsTimeChanged()) {
-                    last = loadLe<std::uint64_t>(field);
-                    state.write(local, last);
-                }
-            } else {
-                if (point.gpsTimeChanged())
-                    last = state.read(local);
-                storeLe(field, last);
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.choose(point.channel());
+        auto* field = record + offsetBytes;
+        if constexpr (Stream::writing) {
+            if (point.gpsTimeChanged()) {
+                last = loadLe<std::uint64_t>(field);
+                state.write(stream, last);
             }
-        });
+        } else {
+            if (point.gpsTimeChanged())
+                last = state.read(stream);
+            storeLe(field, last);
+        }
     }
 
   private:

@@ -29,17 +29,15 @@ class ColourLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.chooseForItem(point);
-            Colour now{};
-            if constexpr (Stream::writing)
-                now = load(record + place_.offsetBytes);
-            last = codeColour(local, state, last, now);
-            if constexpr (!Stream::writing)
-                for (unsigned c = 0; c < 3; ++c)
-                    storeLe(record + place_.offsetBytes + 2 * c, last[c]);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.chooseForItem(point);
+        Colour now{};
+        if constexpr (Stream::writing)
+            now = load(record + place_.offsetBytes);
+        last = codeColour(stream, state, last, now);
+        if constexpr (!Stream::writing)
+            for (unsigned c = 0; c < 3; ++c)
+                storeLe(record + place_.offsetBytes + 2 * c, last[c]);
     }
 
   private:
@@ -129,24 +127,22 @@ class InfraredLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.chooseForItem(point);
-            unsigned now = 0, changes = 0;
-            if constexpr (Stream::writing) {
-                now = loadLe<std::uint16_t>(record + place_.offsetBytes);
-                changes = ((now ^ last) & 0x00FF ? 1u : 0u) | ((now ^ last) & 0xFF00 ? 2u : 0u);
-            }
-            changes = local.symbol(state.changes, changes);
-            unsigned low = last & 255u, high = last >> 8;
-            if (changes & 1)
-                low = (low + local.symbol(state.low, (now - low) & 255)) & 255;
-            if (changes & 2)
-                high = (high + local.symbol(state.high, ((now >> 8) - high) & 255)) & 255;
-            last = static_cast<std::uint16_t>(high << 8 | low);
-            if constexpr (!Stream::writing)
-                storeLe(record + place_.offsetBytes, last);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.chooseForItem(point);
+        unsigned now = 0, changes = 0;
+        if constexpr (Stream::writing) {
+            now = loadLe<std::uint16_t>(record + place_.offsetBytes);
+            changes = ((now ^ last) & 0x00FF ? 1u : 0u) | ((now ^ last) & 0xFF00 ? 2u : 0u);
+        }
+        changes = stream.symbol(state.changes, changes);
+        unsigned low = last & 255u, high = last >> 8;
+        if (changes & 1)
+            low = (low + stream.symbol(state.low, (now - low) & 255)) & 255;
+        if (changes & 2)
+            high = (high + stream.symbol(state.high, ((now >> 8) - high) & 255)) & 255;
+        last = static_cast<std::uint16_t>(high << 8 | low);
+        if constexpr (!Stream::writing)
+            storeLe(record + place_.offsetBytes, last);
     }
 
   private:
@@ -177,16 +173,14 @@ class WavePacketLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.chooseForItem(point);
-            Packet now{};
-            if constexpr (Stream::writing)
-                now = load(record + place_.offsetBytes);
-            last = codePacket(local, state, last, now);
-            if constexpr (!Stream::writing)
-                store(record + place_.offsetBytes, last);
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.chooseForItem(point);
+        Packet now{};
+        if constexpr (Stream::writing)
+            now = load(record + place_.offsetBytes);
+        last = codePacket(stream, state, last, now);
+        if constexpr (!Stream::writing)
+            store(record + place_.offsetBytes, last);
     }
 
   private:
@@ -288,16 +282,14 @@ class ExtraByteLayer {
     }
 
     template <class Stream>
-    void code(Stream& stream, const PointRun<typename Stream::Byte>& run) {
-        codeRun(stream, run, [&](Stream& local, PointInfo point, auto* record) {
-            auto [state, last] = channels_.chooseForItem(point);
-            unsigned difference = 0;
-            if constexpr (Stream::writing)
-                difference = (record[place_.offsetBytes] - last) & 255u;
-            last = static_cast<std::uint8_t>(last + local.symbol(state.differences, difference));
-            if constexpr (!Stream::writing)
-                record[place_.offsetBytes] = last;
-        });
+    STIPPLE_LAZ_INLINE void codePoint(Stream& stream, PointInfo point, typename Stream::Byte* record) {
+        auto [state, last] = channels_.chooseForItem(point);
+        unsigned difference = 0;
+        if constexpr (Stream::writing)
+            difference = (record[place_.offsetBytes] - last) & 255u;
+        last = static_cast<std::uint8_t>(last + stream.symbol(state.differences, difference));
+        if constexpr (!Stream::writing)
+            record[place_.offsetBytes] = last;
     }
 
   private:

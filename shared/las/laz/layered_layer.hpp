@@ -96,7 +96,7 @@ struct PointRun {
     Byte* records = nullptr;
     std::size_t recordLength = 0;
     std::size_t count = 0;
-    const PointInfo* infos = nullptr;
+    PointInfo* infos = nullptr;
 };
 
 // The state of one layer for each scanner channel, made when its first point comes. State::begin(last)
@@ -166,14 +166,15 @@ class Channels {
     bool refreshes_ = true, follows_ = true;
 };
 
-// Calls code(stream, point info, record) for each point of a run. The stream is a local copy meanwhile, so
-// that its state stays in registers. Ends early when the stream does.
-template <class Stream, class Code>
-STIPPLE_LAZ_INLINE void codeRun(Stream& stream, const PointRun<typename Stream::Byte>& run, Code&& code) {
+// Codes the points of a run in one layer, until its stream ends early. The stream is copied meanwhile, so
+// that its state stays in registers. Layer::codePoint(stream, info, record) codes a point: the first layer
+// sets its info, the others read it.
+template <class Stream, class Layer>
+void codeRun(Stream& stream, Layer& layer, const PointRun<typename Stream::Byte>& run) {
     Stream local = stream;
     auto* record = run.records;
     for (std::size_t i = 0; i < run.count; ++i, record += run.recordLength) {
-        code(local, run.infos[i], record);
+        layer.codePoint(local, run.infos[i], record);
         if (local.pastEnd()) [[unlikely]]
             break;
     }
