@@ -50,13 +50,16 @@ class ArithmeticDecoder {
     template <unsigned Capacity, bool Fixed>
     STIPPLE_LAZ_INLINE unsigned decodeSymbol(AdaptiveModel<Capacity, Fixed>& model) {
         const std::uint32_t step = length_ >> AdaptiveModel<Capacity, Fixed>::precision;
-        const unsigned symbol = model.find(value_ / step);
-        const std::uint32_t low = model.distribution[symbol] * step;
-        const std::uint32_t high =
-            symbol + 1 == model.symbols() ? length_ : model.distribution[symbol + 1] * step;
-        value_ -= low;
-        length_ = high - low;
-        renormalize();
+        // A likely symbol is foreseen by the processor, which then does not wait for the division.
+        unsigned symbol = model.likely;
+        if (symbol == model.nothingLikely || !narrow(model, symbol, step)) {
+            symbol = model.find(value_ / step);
+            narrow(model, symbol, step);
+            renormalize();
+        } else if (length_ < minIntervalLength) { // never by more than a byte: half of the interval is left
+            value_ = value_ << 8 | *at_++;
+            length_ <<= 8;
+        }
         ++model.count[symbol];
         if (--model.untilUpdate == 0)
             model.template update<true>();
@@ -85,6 +88,19 @@ class ArithmeticDecoder {
         std::uint32_t value;
         std::memcpy(&value, from, sizeof value);
         return __builtin_bswap32(value);
+    }
+
+    // Makes the interval the symbol's part of it, if the value is there.
+    template <class Model>
+    STIPPLE_LAZ_INLINE bool narrow(const Model& model, unsigned symbol, std::uint32_t step) {
+        const std::uint32_t low = model.distribution[symbol] * step;
+        const std::uint32_t high =
+            symbol + 1 == model.symbols() ? length_ : model.distribution[symbol + 1] * step;
+        if (value_ - low >= high - low)
+            return false;
+        value_ -= low;
+        length_ = high - low;
+        return true;
     }
 
     STIPPLE_LAZ_INLINE std::uint32_t readPart(unsigned count) {

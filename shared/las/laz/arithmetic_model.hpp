@@ -97,9 +97,13 @@ class AdaptiveModel {
         }
         const std::uint32_t scale = 0x80000000u / total_;
         std::uint32_t sum = 0;
+        likely = nothingLikely;
         for (unsigned k = 0; k < n; ++k) {
             distribution[k] = static_cast<std::uint16_t>((scale * sum) >> (31 - precision));
             sum += count[k];
+            if constexpr (ForDecoding)
+                if (count[k] > total_ / 2)
+                    likely = k;
         }
         if constexpr (ForDecoding)
             buildTable();
@@ -147,6 +151,9 @@ class AdaptiveModel {
     std::array<std::uint16_t, Capacity + 1> distribution;
     std::array<std::uint16_t, Capacity> count; // at most maxTotal and a cycle, below 2^16
     std::uint32_t untilUpdate;
+    // For decoding: the symbol that more than half of all so far are.
+    static constexpr std::uint32_t nothingLikely = 0xFFFFFFFF;
+    std::uint32_t likely;
 
   private:
     std::uint32_t total_, cycle_;
