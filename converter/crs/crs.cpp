@@ -258,44 +258,46 @@ CrsReading readRecords(const las::Header& header, ProjContext& proj) {
     return reading;
 }
 
-// What PROJ made of records seen before: the hundreds of tiles of a survey bear the same ones, and each
-// reading costs it a tenth of a second and more.
-class KnownRecords {
+// What PROJ made of texts and records seen before: the hundreds of tiles of a survey bear the same ones, and
+// each reading costs it a tenth of a second and more.
+template <class T>
+class Known {
   public:
-    // All that readRecords looks at.
-    static std::string keyOf(const las::Header& header) {
-        std::string key = wktMustHold(header) ? "w" : "k";
-        for (const las::Vlr& vlr : header.vlrs)
-            if (vlr.userId == las::records::projection)
-                key += cat(vlr.recordId, " ", vlr.omitted ? 1 : 0, " ", vlr.data.size(), ":",
-                           std::string_view(reinterpret_cast<const char*>(vlr.data.data()), vlr.data.size()));
-        return key;
-    }
-    std::optional<CrsReading> find(const std::string& key) {
+    std::optional<T> find(const std::string& key) {
         std::lock_guard lock(mutex_);
-        auto found = readings_.find(key);
-        return found == readings_.end() ? std::nullopt : std::optional(found->second);
+        auto found = kept_.find(key);
+        return found == kept_.end() ? std::nullopt : std::optional(found->second);
     }
-    void keep(const std::string& key, const CrsReading& reading) {
+    void keep(const std::string& key, const T& value) {
         constexpr std::size_t maxKept = 64, maxKeyBytes = 1 << 16;
         std::lock_guard lock(mutex_);
-        if (key.size() > 1 && key.size() <= maxKeyBytes && readings_.size() < maxKept)
-            readings_.emplace(key, reading);
+        if (key.size() <= maxKeyBytes && kept_.size() < maxKept)
+            kept_.emplace(key, value);
     }
 
   private:
     std::mutex mutex_;
-    std::map<std::string, CrsReading> readings_;
+    std::map<std::string, T> kept_;
 };
+
+// All that readRecords looks at.
+std::string recordsKey(const las::Header& header) {
+    std::string key = wktMustHold(header) ? "w" : "k";
+    for (const las::Vlr& vlr : header.vlrs)
+        if (vlr.userId == las::records::projection)
+            key += cat(vlr.recordId, " ", vlr.omitted ? 1 : 0, " ", vlr.data.size(), ":",
+                       std::string_view(reinterpret_cast<const char*>(vlr.data.data()), vlr.data.size()));
+    return key;
+}
 
 } // namespace
 
 Result<CrsReading> crsOfLas(const las::Header& header) {
-    static KnownRecords known;
-    std::string key = KnownRecords::keyOf(header);
+    static Known<CrsReading> known;
+    STIPPLE_TRY(proj, ProjContext::open());
+    std::string key = recordsKey(header);
     std::optional<CrsReading> reading = known.find(key);
     if (!reading) {
-        STIPPLE_TRY(proj, ProjContext::open());
         reading = readRecords(header, *proj);
         known.keep(key, *reading);
     }
@@ -304,15 +306,20 @@ Result<CrsReading> crsOfLas(const las::Header& header) {
 }
 
 Result<Crs> crsFromUser(const std::string& text) {
+    static Known<Crs> known;
     STIPPLE_TRY(proj, ProjContext::open());
-    ProjObject crs = proj->fromText(text);
+    if (std::optional<Crs> crs = known.find(text))
+        return std::move(*crs);
+    ProjObject object = proj->fromText(text);
     std::string messages = proj->takeMessages();
-    if (!crs)
+    if (!object)
         return Error{
             ErrorCode::invalidArgument,
             cat("is no coordinate system that PROJ understands", messages.empty() ? "" : ": ", messages),
             cat("\"", text, "\""), "give EPSG:n, WKT, or a PROJ string"};
-    return proj->describe(crs);
+    Crs crs = proj->describe(object);
+    known.keep(text, crs);
+    return crs;
 }
 
 } // namespace stipple
