@@ -166,6 +166,11 @@ Status CloudFilter::limitLevels() {
         return {};
     if (!(filter_.spacing > 0) || !std::isfinite(filter_.spacing))
         return invalid(cat("the spacing ", filter_.spacing, " is no distance"), "give a number above 0");
+    if (!(metadata_->spacing > 0))
+        return Error{ErrorCode::unsupported, "the cloud does not say how far apart its points are", "",
+                     "export it without a spacing"};
+    DistanceMetric metric = distanceMetric(metadata_->grid, metadata_->crs);
+    metric_ = metric.weights * metric.unit;
     deepestLevel_ = 0;
     while (deepestLevel_ < maxLevel &&
            std::ldexp(metadata_->spacing, -(deepestLevel_ + 1)) >= filter_.spacing)

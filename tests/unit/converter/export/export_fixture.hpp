@@ -1,0 +1,96 @@
+// Clouds to export, what they hold, and what the exports hold, read back by code that shares nothing with
+// what wrote them.
+#pragma once
+
+#include "converter/export/export_file.hpp"
+#include "shared/format/cloud_file.hpp"
+#include "tests/support/small_cloud.hpp"
+#include "tests/unit/converter/build/test_scan.hpp"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace stipple::test {
+
+template <class T>
+T need(Result<T> result) {
+    if (!result.ok())
+        FAIL(result.error().sentence());
+    return std::move(result).value();
+}
+
+// Every point of a cloud in the order of the hierarchy, and the level of its node.
+struct AllPoints {
+    CloudMetadata metadata;
+    PointBatch points;
+    std::vector<NodeEntry> nodes; // of each point
+
+    Vec3d world(std::size_t i) const { return metadata.grid.toWorld(points.positions[i]); }
+};
+AllPoints allPoints(const std::string& path);
+
+// The rows of `all` that `wanted` picks, all attributes.
+template <class Wanted>
+PointBatch rowsWhere(const AllPoints& all, Wanted wanted) {
+    PointBatch rows;
+    rows.columns.resize(all.points.columns.size());
+    for (std::size_t i = 0; i < all.points.size(); ++i) {
+        if (!wanted(i))
+            continue;
+        rows.positions.push_back(all.points.positions[i]);
+        for (std::size_t a = 0; a < rows.columns.size(); ++a) {
+            std::size_t size = all.metadata.schema.attributes[a].size();
+            const Bytes& column = all.points.columns[a];
+            rows.columns[a].insert(rows.columns[a].end(),
+                                   column.begin() + static_cast<std::ptrdiff_t>(i * size),
+                                   column.begin() + static_cast<std::ptrdiff_t>((i + 1) * size));
+        }
+    }
+    return rows;
+}
+
+// A LAS file as a whole.
+struct LasContent {
+    las::Header header;
+    Schema schema;
+    PointBatch points;
+};
+LasContent readLas(const std::string& path);
+
+// CSV by RFC 4180.
+struct CsvContent {
+    std::vector<std::string> names;
+    std::vector<std::vector<std::string>> rows;
+};
+CsvContent readCsv(const std::string& text);
+
+// Binary little-endian PLY with one element of scalar properties.
+struct PlyContent {
+    std::vector<std::string> comments;
+    std::vector<std::string> names, types;
+    std::map<std::string, std::vector<double>> values; // by name
+    std::size_t count = 0;
+};
+PlyContent readPly(const std::string& text);
+
+// "637012.24" with two places is 63701224; a failed test for another number of places.
+std::int64_t decimalDigits(const std::string& text, int places);
+
+// Fails the test unless both hold the same points in the same order.
+void requireEqual(const PointBatch& a, const PointBatch& b);
+
+// A folder with a cloud made from memory: nodes of 3 levels, points anywhere in them.
+struct SmallCloudFile {
+    TemporaryFolder folder;
+    std::string path = folder / "small.stipple";
+    SmallCloud cloud;
+
+    explicit SmallCloudFile(const SmallCloudOptions& options = {});
+};
+
+ExportResult exportOrFail(const std::string& input, const std::string& output,
+                          const ExportOptions& options = {});
+std::string textOf(const std::string& path);
+
+} // namespace stipple::test

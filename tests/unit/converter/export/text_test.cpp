@@ -1,0 +1,154 @@
+// Decimals, and filters as users write them.
+#include "converter/export/decimal.hpp"
+#include "converter/export/filter_text.hpp"
+#include "converter/export/minimum_distance.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+using namespace stipple;
+
+namespace {
+std::string decimal(double scale, double offset, std::int64_t n) {
+    std::string text;
+    DecimalScale(scale, offset, std::min<std::int64_t>(n, 0), std::max<std::int64_t>(n, 0)).append(text, n);
+    return text;
+}
+std::string boxError(const std::string& text) {
+    auto box = boxFromText(text);
+    REQUIRE_FALSE(box.ok());
+    CHECK(box.error().code == ErrorCode::invalidArgument);
+    return box.error().what;
+}
+} // namespace
+
+TEST_CASE("scaled numbers are the decimals people mean") {
+    CHECK(decimal(0.01, 0, 5) == "0.05");
+    CHECK(decimal(0.01, 0, -5) == "-0.05");
+    CHECK(decimal(0.01, 0, 0) == "0.00");
+    CHECK(decimal(0.01, 500000, 1234567) == "512345.67");
+    CHECK(decimal(0.001, 0.5, -500) == "0.000");
+    CHECK(decimal(0.1, 0.2, 1) == "0.3"); // 0.30000000000000004 in double
+    CHECK(decimal(1, 0, 17) == "17");
+    CHECK(decimal(100, 3, 2) == "203");
+    CHECK(decimal(1e-7, 180, -3600000001) == "-180.0000001");
+    CHECK(decimal(0.25, 1e6, 3) == "1000000.75");
+    CHECK(decimal(-0.5, 1, 1) == "0.5");
+    CHECK(decimal(1e-5, -1e-9, 1) == "0.000009999");
+}
+
+TEST_CASE("decimals beyond 64 bits are exact, beyond 128 shortest doubles") {
+    CHECK(decimal(1e-9, 4e12, 1) == "4000000000000.000000001");
+    CHECK(decimal(1e-9, 0, std::numeric_limits<std::int64_t>::max()) == "9223372036.854775807");
+    CHECK(decimal(1e-9, 0, std::numeric_limits<std::int64_t>::min()) == "-9223372036.854775808");
+    CHECK(decimal(0.00030517578125, 0, 1) == "0.00030517578125");
+    DecimalScale tiny(1e-40, 1, 0, 1);
+    CHECK_FALSE(tiny.exact());
+    CHECK(decimal(1e-40, 1, 0) == "1");
+    CHECK(decimal(1e-40, 0, 2) == "2e-40");
+    CHECK(decimal(std::nan(""), 0, 3) == "nan");
+    // Outside what was announced it is slower, not wrong.
+    std::string text;
+    DecimalScale(0.01, 0, 0, 10).append(text, std::numeric_limits<std::int64_t>::max());
+    CHECK(text == "92233720368547758.07");
+}
+
+TEST_CASE("decimals read back to the integers they were made of") {
+    std::mt19937_64 random(1);
+    for (double scale : {0.01, 0.001, 0.0001, 1e-7, 0.3048, 0.000125})
+        for (double offset : {0.0, 637000.0, -0.05, 4567890.123}) {
+            DecimalScale decimals(scale, offset, -2147483648, 2147483647);
+            REQUIRE(decimals.exact());
+            for (int i = 0; i < 200; ++i) {
+                auto n = static_cast<std::int32_t>(random());
+                std::string text;
+                decimals.append(text, n);
+                CHECK(std::llround((std::stold(text) - static_cast<long double>(offset)) /
+                                   static_cast<long double>(scale)) == n);
+            }
+        }
+}
+
+TEST_CASE("floating point is the shortest text that reads back") {
+    auto text = [](auto value) {
+        std::string to;
+        appendShortest(to, value);
+        return to;
+    };
+    CHECK(text(0.1) == "0.1");
+    CHECK(text(0.1f) == "0.1");
+    CHECK(text(-0.0) == "-0");
+    CHECK(text(std::nan("")) == "nan");
+    CHECK(text(-std::numeric_limits<double>::infinity()) == "-inf");
+    CHECK(text(402220818.3546734) == "402220818.3546734");
+}
+
+TEST_CASE("boxes are four or six numbers") {
+    auto flat = boxFromText("1,2,3.5,-4e1");
+    REQUIRE(flat.ok());
+    CHECK(flat->min == Vec3d{1, 2, -std::numeric_limits<double>::infinity()});
+    CHECK(flat->max == Vec3d{3.5, -40, std::numeric_limits<double>::infinity()});
+    auto full = boxFromText(" 1, 2 ,3,+4,5,inf ");
+    REQUIRE(full.ok());
+    CHECK(full->max == Vec3d{4, 5, std::numeric_limits<double>::infinity()});
+    CHECK(boxError("1,2,3") == "a box has four or six numbers, not 3");
+    CHECK(boxError("1,2,3,x") == "\"x\" is no number of a box");
+    CHECK(boxError("1,2,3,nan") == "\"nan\" is no number of a box");
+    CHECK(boxError("1,2,,3") == "\"\" is no number of a box");
+    CHECK(boxError("1 2 3 4").find("is no number") != std::string::npos);
+}
+
+TEST_CASE("classes are numbers and ranges") {
+    auto ranges = rangesFromText("2, 6,40-45");
+    REQUIRE(ranges.ok());
+    CHECK(*ranges == std::vector<ValueRange>{{2, 2}, {6, 6}, {40, 45}});
+    for (const char* wrong : {"", "x", "2,", "5-3", "-1", "1-", "1.5", "2;3", "99999999999"}) {
+        auto refused = rangesFromText(wrong);
+        INFO(wrong);
+        REQUIRE_FALSE(refused.ok());
+        CHECK(refused.error().what.find("is no class and no range of classes") != std::string::npos);
+    }
+}
+
+TEST_CASE("attributes are found by name, in any case, commas included") {
+    Schema schema;
+    for (const char* name : {"Intensity", "height, above ground", "red", "Red"})
+        schema.attributes.push_back({.name = name});
+    auto found = [&](const std::vector<std::string>& texts) {
+        auto attributes = attributesFromTexts(schema, texts);
+        return attributes ? *attributes : std::vector<int>{-1};
+    };
+    CHECK(found({"intensity, red,intensity"}) == std::vector<int>{0, 2});
+    CHECK(found({"Red", "height, above ground"}) == std::vector<int>{3, 1});
+    CHECK(found({""}).empty());
+    auto unknown = attributesFromTexts(schema, {"Intensity,RED"});
+    REQUIRE_FALSE(unknown.ok());
+    CHECK(unknown.error().sentence() ==
+          "the cloud has no attribute \"RED\" (it has Intensity, height, above ground, red, Red)");
+}
+
+TEST_CASE("thinned points keep their distance, and each point left out is near to one kept") {
+    std::mt19937_64 random(4);
+    for (double distance : {0.5, 3.0, 40.0, 1e9}) {
+        std::vector<Vec3i> points;
+        for (int i = 0; i < 1500; ++i)
+            points.push_back({static_cast<std::int64_t>(random() % 200) - 50,
+                              static_cast<std::int64_t>(random() % 200),
+                              static_cast<std::int64_t>(random() % 10)});
+        Vec3d scale{0.5, 0.25, 1};
+        auto squared = [&](std::size_t a, std::size_t b) {
+            Vec3i d = points[a] - points[b];
+            double x = double(d.x) * scale.x, y = double(d.y) * scale.y, z = double(d.z) * scale.z;
+            return x * x + y * y + z * z;
+        };
+        std::vector<std::uint32_t> expected; // greedy, by looking at all
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            if (std::none_of(expected.begin(), expected.end(),
+                             [&](std::uint32_t kept) { return squared(kept, i) < distance * distance; }))
+                expected.push_back(i);
+        CHECK(thinned(points, {-50, 0, 0}, scale, distance) == expected);
+    }
+}
