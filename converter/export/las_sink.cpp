@@ -135,8 +135,6 @@ bool hasStandardGpsTime(const Schema& schema) {
 Result<std::unique_ptr<LasSink>> LasSink::create(const std::string& path, const SinkInput& input,
                                                  const BoxI& reach, std::uint64_t expectedPoints,
                                                  bool compressed) {
-    if (compressed)
-        return Error{ErrorCode::unsupported, "LAZ files can't be written", path, "write LAS"};
     std::unique_ptr<LasSink> sink(new LasSink());
     STIPPLE_TRY(shift, shiftInto32Bits(reach));
     sink->shift_ = shift;
@@ -148,6 +146,7 @@ Result<std::unique_ptr<LasSink>> LasSink::create(const std::string& path, const 
     options.schema = namedForLas(input.schema(), sink->warnings_);
     options.pointFormat = choosePointFormat(input, options.schema);
     options.expectedPoints = expectedPoints;
+    options.compressed = compressed;
     options.wkt = wktOf(input.metadata.crs, sink->warnings_);
     options.globalEncoding = hasStandardGpsTime(options.schema) ? 1 : 0;
     STIPPLE_TRY(writer, las::Writer::create(path, options));

@@ -170,7 +170,7 @@ struct ExtraScan {
 
 } // namespace
 
-TEST_CASE("each point format is exported as LAS, PLY and CSV with every attribute of every point") {
+TEST_CASE("each point format is exported as LAS, LAZ, PLY and CSV with every attribute of every point") {
     for (int format = 0; format <= 10; ++format) {
         INFO("point format " << format);
         TemporaryFolder folder;
@@ -186,6 +186,13 @@ TEST_CASE("each point format is exported as LAS, PLY and CSV with every attribut
         CHECK(las.header.grid == all.metadata.grid);
         checkSchema(las.schema, all.metadata.schema);
         requireEqual(las.points, all.points);
+        ExportResult packed = exportOrFail(folder / "c.stipple", folder / "out.laz");
+        CHECK(packed.format.starts_with("LAZ 1."));
+        LasContent laz = readLas(folder / "out.laz");
+        CHECK(laz.header.compressed);
+        CHECK(laz.header.pointFormat == format);
+        checkSchema(laz.schema, all.metadata.schema);
+        requireEqual(laz.points, all.points);
         exportOrFail(folder / "c.stipple", folder / "out.csv");
         checkCsv(all, readCsv(textOf(folder / "out.csv")));
         exportOrFail(folder / "c.stipple", folder / "out.ply");
@@ -193,7 +200,7 @@ TEST_CASE("each point format is exported as LAS, PLY and CSV with every attribut
     }
 }
 
-TEST_CASE("extra bytes of every type are in LAS, PLY and CSV") {
+TEST_CASE("extra bytes of every type are in LAS, LAZ, PLY and CSV") {
     std::vector<Attribute> extras;
     for (AttributeType type :
          {AttributeType::u8, AttributeType::i8, AttributeType::u16, AttributeType::i16, AttributeType::u32,
@@ -205,6 +212,10 @@ TEST_CASE("extra bytes of every type are in LAS, PLY and CSV") {
     LasContent las = readLas(scan.folder / "out.las");
     checkSchema(las.schema, all.metadata.schema);
     requireEqual(las.points, all.points);
+    exportOrFail(scan.cloud, scan.folder / "out.laz");
+    LasContent laz = readLas(scan.folder / "out.laz");
+    checkSchema(laz.schema, all.metadata.schema);
+    requireEqual(laz.points, all.points);
     exportOrFail(scan.cloud, scan.folder / "out.csv");
     checkCsv(all, readCsv(textOf(scan.folder / "out.csv")));
     exportOrFail(scan.cloud, scan.folder / "out.ply");

@@ -122,6 +122,8 @@ TEST_CASE("an empty cloud gives valid empty files") {
             options.filter.box = BoxD{{0, 0, 0}, {1, 1, 1}};
         CHECK(exportOrFail(folder / "c.stipple", folder / "out.las", options).points == 0);
         CHECK(readLas(folder / "out.las").points.size() == 0);
+        exportOrFail(folder / "c.stipple", folder / "out.laz", options);
+        CHECK(readLas(folder / "out.laz").points.size() == 0);
         exportOrFail(folder / "c.stipple", folder / "out.csv", options);
         CHECK(readCsv(textOf(folder / "out.csv")).names.size() > 3);
         exportOrFail(folder / "c.stipple", folder / "out.ply", options);
@@ -191,7 +193,7 @@ TEST_CASE("outputs that can't be are refused, and nothing is written") {
 
 TEST_CASE("an export that is interrupted, or meets a damaged node, leaves nothing") {
     SmallCloudFile file;
-    for (const char* name : {"out.las", "out.ply", "out.csv"}) {
+    for (const char* name : {"out.las", "out.laz", "out.ply", "out.csv"}) {
         std::atomic<bool> stop{false};
         ExportOptions options;
         options.stop = &stop;
@@ -207,7 +209,7 @@ TEST_CASE("an export that is interrupted, or meets a damaged node, leaves nothin
     damaged[node.offsetBytes + node.sizeBytes() / 2] ^= 1;
     std::ofstream(file.path, std::ios::binary)
         .write(reinterpret_cast<const char*>(damaged.data()), static_cast<std::streamsize>(damaged.size()));
-    for (const char* name : {"out.las", "out.ply", "out.csv"}) {
+    for (const char* name : {"out.las", "out.laz", "out.ply", "out.csv"}) {
         auto result = exportFile(file.path, file.folder / name, {}, noProgress);
         REQUIRE_FALSE(result.ok());
         CHECK(result.error().where.find(cat(file.path, ", node ", node.key.text())) == 0);
