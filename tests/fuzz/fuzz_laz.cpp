@@ -36,8 +36,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto starts = reader.chunkStarts();
     require(std::is_sorted(starts.begin(), starts.end()) && (starts.empty() || starts[0] == 0));
     // Records of 64 KiB would only take time.
-    const std::uint64_t count =
-        std::min<std::uint64_t>({reader.pointCount(), mostPoints, (1 << 20) / reader.header().recordLength});
+    const std::uint64_t count = std::min<std::uint64_t>(
+        {reader.pointCount(), mostPoints, std::uint64_t{1 << 20} / reader.header().recordLength});
     PointBatch whole, part;
     bool readable = read(reader, 0, count, whole);
     for (std::uint64_t first : {count / 2, count / 3, std::uint64_t{0}})
