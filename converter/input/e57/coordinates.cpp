@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<std::string_view, 3> cartesianNames{"cartesianX", "cartesianY", "cartesianZ"};
 constexpr std::array<std::string_view, 3> sphericalNames{"sphericalRange", "sphericalAzimuth",
                                                          "sphericalElevation"};
-constexpr int float32Bits = 24, float64Bits = 53;
+constexpr int float32Bits = 24, float64Bits = 53, doubleDigits = 15;
 
 // How many of the three a record has; `missing` is the last one that it has not.
 int findAll(const ScanEntry& scan, const std::array<std::string_view, 3>& names, CoordinateFields& found,
@@ -234,8 +234,13 @@ double finestStep(const ScanEntry& scan, const CoordinateFields& fields, const B
     // Of integers alone their own step counts; beside floats the finer of both.
     bool anyFloat = std::any_of(fields.axes.begin(), fields.axes.end(),
                                 [&](std::size_t f) { return scan.fields[f].isFloat(); });
+    double magnitude = 1e-300;
+    for (int axis = 0; axis < 3; ++axis)
+        magnitude = std::max({magnitude, std::abs(local.min[axis]), std::abs(local.max[axis])});
+    // A double has 15 decimal digits: after the first of the largest coordinate, no more than these are told.
+    int told = doubleDigits - static_cast<int>(std::ceil(std::log10(magnitude)));
     Precision decimal;
-    decimal.decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(scale / 2))));
+    decimal.decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(scale / 2))), 0, std::max(told, 0));
     double integerStep = floatGrid(local, decimal).scale.x;
     return anyFloat ? std::min(step, integerStep) : integerStep;
 }

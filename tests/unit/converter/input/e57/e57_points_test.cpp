@@ -231,6 +231,17 @@ TEST_CASE("a rotated scan is turned, then moved, and lands within a quarter of i
     CHECK(read.report.maxRounding <= 0.00025);
 }
 
+TEST_CASE("a rotated scan with an absurdly fine step is placed as finely as doubles tell") {
+    E57Scan scan;
+    for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"})
+        scan.fields.push_back(scaledField(name, 0, 100, "1e-300", "7", {5, 6}));
+    scan.xml = cat("<pose>", rotationXml(std::sqrt(0.5), 0, 0, std::sqrt(0.5)), "</pose>");
+    E57Points read = readE57({{scan}, ""});
+    CHECK(std::abs(read.world()[0].x + 7) < 1e-12);
+    CHECK(std::abs(read.world()[1].y - 7) < 1e-12);
+    CHECK(read.report.maxRounding < 1e-12);
+}
+
 TEST_CASE("small floats far from the origin keep their digits") {
     E57Scan scan = floatScan({{1.0000001f, 2, 3}, {1.0000002f, 2, 3}});
     scan.xml = cat("<pose type=\"Structure\">", translationXml("500000", "4000000", "0"), "</pose>");
