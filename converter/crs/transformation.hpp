@@ -6,7 +6,7 @@
 //
 // Heights. Both systems define them (compound, three-dimensional, geocentric): they are transformed. One of
 // them does not: the other's heights are left out of account and z stays as it is. Geocentric coordinates
-// have no height of their own: the other system's are then taken to be ellipsoidal.
+// have no height of their own: the other system's are then taken for metres above its ellipsoid.
 //
 // No network: grids come from the disk alone.
 #pragma once

@@ -3,9 +3,23 @@
 
 #include <catch2/catch.hpp>
 
+#include <random>
 #include <string>
 
 using namespace stipple;
+
+namespace {
+// The definition, as slow as it comes: of patterns without brackets and names of single bytes.
+bool matchesSlowly(std::string_view name, std::string_view pattern) {
+    if (pattern.empty())
+        return name.empty();
+    if (pattern[0] == '*')
+        return matchesSlowly(name, pattern.substr(1)) ||
+               (!name.empty() && matchesSlowly(name.substr(1), pattern));
+    return !name.empty() && (pattern[0] == '?' || pattern[0] == name[0]) &&
+           matchesSlowly(name.substr(1), pattern.substr(1));
+}
+} // namespace
 
 TEST_CASE("a star is any characters, a question mark one, a bracket one of a set", "[glob]") {
     CHECK(matchesPattern("town.laz", "*.laz"));
@@ -53,4 +67,26 @@ TEST_CASE("a pattern of many stars takes no time that grows with their number", 
         pattern += "*a";
     CHECK(matchesPattern(name, pattern));
     CHECK_FALSE(matchesPattern(name, pattern + "b"));
+}
+
+TEST_CASE("random patterns match as their definition says", "[glob]") {
+    std::mt19937 random(5);
+    auto text = [&](std::string_view alphabet) {
+        std::string made;
+        for (auto size = random() % 9; made.size() < size;)
+            made += alphabet[random() % alphabet.size()];
+        return made;
+    };
+    int matches = 0;
+    for (int round = 0; round < 20000; ++round) {
+        std::string name = text("ab"), pattern = text("ab*?");
+        CAPTURE(name, pattern);
+        bool expected = matchesSlowly(name, pattern);
+        matches += expected ? 1 : 0;
+        REQUIRE(matchesPattern(name, pattern) == expected);
+    }
+    CHECK(matches > 1000);
+    // Any bytes at all do no harm.
+    for (int round = 0; round < 20000; ++round)
+        matchesPattern(text("a\xC3\xA4\xE6\xFF]"), text("a*?[]!^-\xC3\xA4\xE6\xFF"));
 }
