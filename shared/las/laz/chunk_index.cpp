@@ -10,6 +10,11 @@ namespace stipple::las::laz {
 
 namespace {
 
+// More than any encoder can put into a byte: a symbol costs some ten-thousandths of a bit however often it
+// repeats, and a point of one value takes ten of them (10^7 equal points: 660 in a byte). What claims more is
+// damaged, or made to keep its readers busy.
+constexpr std::uint64_t mostPointsPerByte = 2000;
+
 class IndexBuilder {
   public:
     IndexBuilder(ByteSource& source, const Header& header, std::uint64_t pointsEnd,
@@ -26,7 +31,7 @@ class IndexBuilder {
     Result<std::uint64_t> tableOffset();
     Status useTable(const std::vector<Chunk>& chunks);
     Status hopChunks();
-    void takeWhole(std::uint64_t begin);
+    Status takeWhole(std::uint64_t begin);
     Result<Bytes> bytesAt(std::uint64_t offset, std::uint64_t size);
     void addChunk(std::uint64_t points, std::uint64_t bytes);
     std::size_t layerCount() const;
@@ -80,13 +85,20 @@ Result<ChunkIndex> IndexBuilder::build() {
     if (index_.record.isChunked())
         STIPPLE_CHECK(indexChunks());
     else
-        takeWhole(header_.pointDataOffset);
+        STIPPLE_CHECK(takeWhole(header_.pointDataOffset));
     return std::move(index_);
 }
 
-void IndexBuilder::takeWhole(std::uint64_t begin) {
+Status IndexBuilder::takeWhole(std::uint64_t begin) {
+    const std::uint64_t bytes = pointsEnd_ - std::min(pointsEnd_, begin);
+    if (index_.pointCount / mostPointsPerByte > bytes)
+        return Error{
+            ErrorCode::corrupt,
+            cat("the header counts ", index_.pointCount, " points, more than ", bytes, " bytes can hold"),
+            "header byte 107", "the file is damaged; copy it again"};
     index_.starts = {0, index_.pointCount};
     index_.offsets = {begin, pointsEnd_};
+    return {};
 }
 
 Status IndexBuilder::indexChunks() {
@@ -101,10 +113,10 @@ Status IndexBuilder::indexChunks() {
         return used;
     index_.starts = {0};
     index_.offsets = {chunksBegin_};
-    if (index_.record.compressor == Compressor::layeredChunked)
+    if (index_.record.compressor == Compressor::layeredChunked) {
         STIPPLE_CHECK(hopChunks());
-    else if (!index_.record.hasVariableChunks()) {
-        takeWhole(chunksBegin_);
+    } else if (!index_.record.hasVariableChunks()) {
+        STIPPLE_CHECK(takeWhole(chunksBegin_));
         index_.sequential = true;
     } else {
         return Error{
@@ -173,8 +185,11 @@ Status IndexBuilder::useTable(const std::vector<Chunk>& chunks) {
             continue;
         if (points == 0 || chunk.bytes < leastChunkBytes())
             return damaged(cat("gives chunk ", i, " ", points, " points in ", chunk.bytes, " bytes"));
-        if (const std::uint64_t unread = index_.pointCount - index_.starts.back(); unread > 0)
-            addChunk(std::min(points, unread), chunk.bytes);
+        const std::uint64_t wanted = std::min(points, index_.pointCount - index_.starts.back());
+        if (wanted / mostPointsPerByte > chunk.bytes)
+            return damaged(cat("gives chunk ", i, " ", wanted, " points in only ", chunk.bytes, " bytes"));
+        if (wanted > 0)
+            addChunk(wanted, chunk.bytes);
     }
     const std::uint64_t listed = index_.starts.back();
     if (listed < index_.pointCount) {
@@ -212,7 +227,7 @@ Status IndexBuilder::hopChunks() {
         std::uint64_t bytes = headSize;
         while (reader.remaining() > 0)
             bytes += reader.read<std::uint32_t>();
-        if (points == 0 || bytes > pointsEnd_ - at)
+        if (points == 0 || points / mostPointsPerByte > bytes || bytes > pointsEnd_ - at)
             break;
         addChunk(std::min(points, index_.pointCount - index_.starts.back()), bytes);
     }
