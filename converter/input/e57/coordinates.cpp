@@ -146,8 +146,10 @@ bool allInRange(const ScanEntry& scan, const CoordinateFields& fields, const Gri
 
 void placeExactly(const CoordinateFields& fields, const GridMap& map, const std::vector<Column>& columns,
                   std::size_t count, Kept& kept, ReadReport& report) {
-    kept.rows.clear();
-    kept.positions.clear();
+    kept.rows.resize(count);
+    kept.positions.resize(count);
+    std::size_t points = 0;
+    const bool same = map.isIdentity();
     std::int64_t low[3], high[3];
     const std::int64_t* values[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -166,16 +168,19 @@ void placeExactly(const CoordinateFields& fields, const GridMap& map, const std:
             ++report.outOfRange;
             continue;
         }
-        kept.rows.push_back(static_cast<std::uint32_t>(i));
-        kept.positions.push_back(map.toCloud(p));
+        kept.rows[points] = static_cast<std::uint32_t>(i);
+        kept.positions[points++] = same ? p : map.toCloud(p);
     }
+    kept.rows.resize(points);
+    kept.positions.resize(points);
 }
 
 void locate(const ScanEntry& scan, const CoordinateFields& fields, const std::vector<Column>& columns,
             std::size_t count, Kept& kept, ReadReport& report) {
-    kept.rows.clear();
-    kept.local.clear();
-    kept.world.clear();
+    kept.rows.resize(count);
+    kept.local.resize(count);
+    kept.world.resize(count);
+    std::size_t points = 0;
     auto value = [&](std::size_t axis, std::size_t i) {
         return columns[fields.axes[axis]].value(scan.fields[fields.axes[axis]], i);
     };
@@ -200,10 +205,13 @@ void locate(const ScanEntry& scan, const CoordinateFields& fields, const std::ve
             ++report.outOfRange;
             continue;
         }
-        kept.rows.push_back(static_cast<std::uint32_t>(i));
-        kept.local.push_back(local);
-        kept.world.push_back(world);
+        kept.rows[points] = static_cast<std::uint32_t>(i);
+        kept.local[points] = local;
+        kept.world[points++] = world;
     }
+    kept.rows.resize(points);
+    kept.local.resize(points);
+    kept.world.resize(points);
 }
 
 void roundToGrid(const Grid& grid, Kept& kept, ReadReport& report) {
