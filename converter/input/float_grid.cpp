@@ -11,10 +11,13 @@ namespace stipple {
 
 namespace {
 constexpr int float32Bits = 24;
-constexpr double mostSteps = 4503599627370496.0; // 2^52: the widest root cube
-constexpr double largestInteger = 2147483647.0;  // that LAS can count to
-constexpr double offsetSteps = 1e6;              // offsets are multiples of so many steps: short decimals
-constexpr double finestOfExtent = 1e-9;          // of numbers with more digits than a scanner measures
+constexpr double mostSteps = 68719476736.0;            // 2^36
+constexpr double mostFloat32Steps = 2147483648.0;      // 2^31
+constexpr double mostForcedSteps = 4503599627370496.0; // 2^52: the widest root cube
+constexpr double mostFromZero = 9007199254740992.0;    // 2^53
+constexpr double largestInteger = 2147483647.0;        // that LAS can count to
+constexpr double offsetSteps = 1e6;     // offsets are multiples of so many steps: short decimals
+constexpr double finestOfExtent = 1e-9; // of numbers with more digits than a scanner measures
 
 // The double nearest to 10^exponent, which prints as just that.
 double powerOfTen(int exponent) {
@@ -54,14 +57,15 @@ Grid floatGrid(const BoxD& bounds, const Precision& precision, double step) {
     Grid grid;
     if (bounds.empty())
         return grid;
-    double extent = largestExtent(bounds);
+    double extent = largestExtent(bounds), magnitude = largestMagnitude(bounds);
     if (step <= 0) {
         int exponent = stepExponent(bounds, precision);
-        while (extent / powerOfTen(exponent) >= mostSteps)
+        const double most = precision.significandBits > float32Bits ? mostSteps : mostFloat32Steps;
+        while (extent / powerOfTen(exponent) > most || magnitude / powerOfTen(exponent) > mostFromZero)
             ++exponent;
         step = powerOfTen(exponent);
     }
-    while (extent / step >= mostSteps)
+    while (extent / step > mostForcedSteps || magnitude / step > mostFromZero)
         step *= 10;
     grid.scale = {step, step, step};
     for (int axis = 0; axis < 3; ++axis) {
