@@ -3,6 +3,10 @@
 #include "converter/input/cloud_input.hpp"
 #include "converter/input/e57/e57_input.hpp"
 #include "converter/input/las_input.hpp"
+#include "converter/input/pcd_input.hpp"
+#include "converter/input/ply_input.hpp"
+#include "converter/input/ptx_input.hpp"
+#include "converter/input/text_input.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 
@@ -12,8 +16,17 @@
 namespace stipple {
 
 namespace {
-constexpr std::size_t startBytes = 64;
+constexpr std::size_t startBytes = std::size_t{1} << 16;
 using Opener = Result<std::unique_ptr<PointInput>> (*)(const std::string& path, const InputOptions& options);
+using SourceOpener = Result<std::unique_ptr<PointInput>> (*)(const std::string& path,
+                                                             std::unique_ptr<SharedSource> source,
+                                                             const InputOptions& options);
+
+template <SourceOpener open>
+Result<std::unique_ptr<PointInput>> openWithSource(const std::string& path, const InputOptions& options) {
+    STIPPLE_TRY(source, SharedSource::openFile(path));
+    return open(path, std::move(source), options);
+}
 
 struct Kind {
     std::string_view start; // a file of the kind begins with these bytes
@@ -30,13 +43,20 @@ constexpr std::array kinds = {
          [](const std::string& path, const InputOptions& options) {
              return openE57Input(path, options.scale);
          }},
-    Kind{"ply\n", "a PLY file", nullptr},
-    Kind{"ply\r", "a PLY file", nullptr},
-    Kind{"# .PCD", "a PCD file", nullptr},
+    Kind{"ply\n", "a PLY file", openWithSource<openPlyInput>},
+    Kind{"ply\r", "a PLY file", openWithSource<openPlyInput>},
+    Kind{"ply ", "a PLY file", openWithSource<openPlyInput>},
     Kind{"PK\x03\x04", "a ZIP archive", nullptr},
+    Kind{"\x1F\x8B", "a gzip file", nullptr},
+    Kind{"\xFF\xD8\xFF", "a JPEG picture", nullptr},
+    Kind{"\x89PNG", "a PNG picture", nullptr},
+    Kind{"%PDF", "a PDF document", nullptr},
+    Kind{std::string_view("II*\0", 4), "a TIFF picture", nullptr},
+    Kind{"{", "a JSON file", nullptr},
+    Kind{"<", "an XML or HTML file", nullptr},
 };
 
-constexpr std::string_view readKinds = "give LAS, LAZ, E57 or Stipple files";
+constexpr std::string_view readKinds = "give LAS, LAZ, E57, PLY, PCD, PTX, PTS, text or Stipple files";
 
 Result<std::string> startOf(const std::string& path) {
     STIPPLE_TRY(source, openFileSource(path));
@@ -44,18 +64,33 @@ Result<std::string> startOf(const std::string& path) {
     return std::string(bytes.begin(), bytes.end());
 }
 
+constexpr Kind pcdKind{"", "a PCD file", openWithSource<openPcdInput>};
+constexpr Kind ptxKind{"", "a PTX file", openWithSource<openPtxInput>};
+constexpr Kind textKind{"", "a text file", openWithSource<openTextInput>};
+
+// A PCD file may begin with comments of any words.
+bool looksLikePcd(std::string_view start) {
+    while (start.starts_with('#') && start.find('\n') != std::string_view::npos)
+        start.remove_prefix(start.find('\n') + 1);
+    return start.starts_with("VERSION") || start.starts_with("FIELDS");
+}
+
 // Null: of no known kind.
-const Kind* kindOf(std::string_view start) {
+const Kind* kindOf(std::string_view start, const InputOptions& options) {
     for (const Kind& kind : kinds)
         if (start.starts_with(kind.start))
             return &kind;
-    return nullptr;
+    if (looksLikePcd(start))
+        return &pcdKind;
+    if (looksLikePtx(start))
+        return &ptxKind;
+    return looksLikeText(start, !options.columns.empty()) ? &textKind : nullptr;
 }
 } // namespace
 
 InputKind inputKindOf(const std::string& path) {
     auto start = startOf(path);
-    const Kind* kind = start ? kindOf(*start) : nullptr;
+    const Kind* kind = start ? kindOf(*start, {}) : nullptr;
     if (!kind || !kind->open)
         return InputKind::notRead;
     return kind->name == cloudName ? InputKind::cloud : InputKind::scan;
@@ -68,7 +103,7 @@ Result<std::unique_ptr<PointInput>> openInput(const std::string& path, const Inp
     STIPPLE_TRY(start, startOf(path));
     if (start.empty())
         return Error{ErrorCode::truncated, "the file is empty", path, "was it copied completely?"};
-    if (const Kind* kind = kindOf(start)) {
+    if (const Kind* kind = kindOf(start, options)) {
         if (!kind->open)
             return Error{ErrorCode::unsupported, cat("this is ", kind->name, ", which is not read"), path,
                          std::string(readKinds)};

@@ -1,5 +1,5 @@
-// Any file to a PointInput. Files are told by their first bytes, not by their names; only text without a
-// recognisable start is told by its name's ending as well.
+// Any file to a PointInput. Files are told by their first bytes, never by their names; text of points by a
+// first line of data with three numbers, below comments and at most one line of names.
 #pragma once
 
 #include "converter/input/point_input.hpp"

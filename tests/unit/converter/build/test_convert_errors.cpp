@@ -30,11 +30,13 @@ TEST_CASE("inputs that can't be read are refused by name, and nothing is left be
     checkRefused(folder, {folder / "none.las"}, output, ErrorCode::notFound, "none.las", "");
     std::filesystem::create_directory(folder / "folder");
     checkRefused(folder, {folder / "folder"}, output, ErrorCode::unsupported, "folder", "is a folder");
-    writeText(folder / "text.las", "x y z\n1 2 3\n");
+    writeText(folder / "text.las", "a poem\nof two lines\n");
     checkRefused(folder, {folder / "text.las"}, output, ErrorCode::unsupported, "text.las",
                  "of no kind that is read");
     writeText(folder / "mesh.las", "ply\nformat ascii 1.0\n");
-    checkRefused(folder, {folder / "mesh.las"}, output, ErrorCode::unsupported, "mesh.las", "PLY");
+    checkRefused(folder, {folder / "mesh.las"}, output, ErrorCode::truncated, "mesh.las", "end_header");
+    writeText(folder / "photo.las", "\xFF\xD8\xFF\xE0");
+    checkRefused(folder, {folder / "photo.las"}, output, ErrorCode::unsupported, "photo.las", "JPEG");
     writeText(folder / "empty.las", "");
     checkRefused(folder, {folder / "empty.las"}, output, ErrorCode::truncated, "empty.las", "empty");
     checkRefused(folder, {}, output, ErrorCode::invalidArgument, "", "no input");

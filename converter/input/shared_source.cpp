@@ -1,0 +1,42 @@
+#include "converter/input/shared_source.hpp"
+
+#include "shared/io/file_source.hpp"
+
+namespace stipple {
+
+Result<std::unique_ptr<SharedSource>> SharedSource::openFile(const std::string& path) {
+    STIPPLE_TRY(source, openFileSource(path));
+    auto shared = std::make_unique<SharedSource>(std::move(source));
+    std::error_code unknown;
+    shared->changed_ = std::filesystem::last_write_time(path, unknown);
+    shared->isFile_ = !unknown;
+    return shared;
+}
+
+Result<Bytes> SharedSource::read(ByteRange range) {
+    if (range.offset >= sizeBytes_)
+        return Bytes{};
+    std::lock_guard lock(mutex_);
+    STIPPLE_CHECK(open());
+    return readNow(*source_, range);
+}
+
+void SharedSource::rest() {
+    std::lock_guard lock(mutex_);
+    if (isFile_)
+        source_.reset();
+}
+
+Status SharedSource::open() {
+    if (source_)
+        return {};
+    STIPPLE_TRY(source, openFileSource(name_));
+    std::error_code unknown;
+    if (source->sizeBytes() != sizeBytes_ || std::filesystem::last_write_time(name_, unknown) != changed_)
+        return Error{ErrorCode::changed, "the file changed while it was being read", name_,
+                     "convert again when it is complete"};
+    source_ = std::move(source);
+    return {};
+}
+
+} // namespace stipple
