@@ -21,6 +21,8 @@ ChunkReader::ChunkReader(ByteSource& source, std::shared_ptr<const ChunkIndex> i
 }
 
 void ChunkReader::select(Layers layers) {
+    if (!isLayered())
+        return;
     layers_ = std::move(layers);
     layered_ = nullptr;
     open_ = false;
