@@ -150,20 +150,36 @@ class Builder {
     }
 
     // With `keep` the rows stay in their cells too.
-    Result<Subtree> load(const Item& item, bool keep) {
+    Result<Subtree> load(const Item& item, bool keep, SubtreeBuffers& buffers) {
         if (item.points > UINT32_MAX)
             return Error{ErrorCode::limitExceeded,
                          cat(item.points, " points lie at one position, but a node holds at most 2^32 - 1"),
                          "", "thin the input"};
         std::size_t count = static_cast<std::size_t>(item.points);
-        auto rows = std::make_unique_for_overwrite<std::uint8_t[]>(count * tiles_.layout.rowBytes());
-        STIPPLE_CHECK(loadRows(item, keep, rows.get()));
-        return Subtree(tiles_.layout, tiles_.grid.cube, item.key, std::move(rows), count);
+        STIPPLE_CHECK(loadRows(item, keep, buffers.rows(count, tiles_.layout.rowBytes())));
+        return Subtree(tiles_.layout, tiles_.grid.cube, item.key, buffers, count);
+    }
+
+    using Buffers = std::unique_ptr<SubtreeBuffers>;
+    Buffers takeBuffers() {
+        std::lock_guard lock(mutex_);
+        if (buffers_.empty())
+            return std::make_unique<SubtreeBuffers>();
+        Buffers buffers = std::move(buffers_.back());
+        buffers_.pop_back();
+        return buffers;
+    }
+    // Kept only while so many of the largest fit the memory.
+    void giveBack(Buffers buffers) {
+        std::lock_guard lock(mutex_);
+        if ((buffers_.size() + 1) * subtreeBytes <= options_.memoryBytes)
+            buffers_.push_back(std::move(buffers));
     }
 
     Status buildOne(int tier, const Item& item, std::span<const Borders* const> borders, int threads,
                     BuiltSubtree& built) {
-        STIPPLE_TRY(subtree, load(item, false));
+        Buffers buffers = takeBuffers();
+        STIPPLE_TRY(subtree, load(item, false, *buffers));
         if (item.leaves.empty())
             subtree.splitByCount(leafCapacity);
         else
@@ -175,6 +191,7 @@ class Builder {
         STIPPLE_CHECK(pack(subtree, sampled, threads, built));
         if (item.key.level > 0)
             STIPPLE_CHECK(storeSample(subtree, sampled.kept[0], built));
+        giveBack(std::move(buffers));
         std::lock_guard lock(mutex_);
         STIPPLE_CHECK(journal_.add(built));
         for (const CellRef& cell : item.cells)
@@ -308,9 +325,11 @@ class Builder {
         std::vector<SpacingEstimate> parts(chosen, estimate);
         auto examine = [&](std::size_t i, int) -> Status {
             const PlannedSubtree& from = *large[(2 * i + 1) * large.size() / (2 * chosen)];
-            STIPPLE_TRY(subtree, load({from.key, from.points, from.cells, {}, {}}, true));
+            Buffers buffers = takeBuffers();
+            STIPPLE_TRY(subtree, load({from.key, from.points, from.cells, {}, {}}, true, *buffers));
             subtree.splitByCount(leafCapacity);
             parts[i].add(subtree);
+            giveBack(std::move(buffers));
             return {};
         };
         STIPPLE_CHECK(parallelFor(chosen, options_.threads, options_.stop, examine));
@@ -356,6 +375,7 @@ class Builder {
     std::vector<BuiltSubtree> built_;                         // tier by tier, in the order of the keys
     BatchStatistics histograms_;                              // over all of them; the rest of it is unused
     std::mutex mutex_;
+    std::vector<Buffers> buffers_; // not in use
     std::uint64_t done_ = 0;
 };
 } // namespace

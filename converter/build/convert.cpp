@@ -8,6 +8,7 @@
 #include "converter/build/work_folder.hpp"
 #include "shared/base/text.hpp"
 #include "shared/codec/checksum.hpp"
+#include "shared/io/file_source.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -153,6 +154,15 @@ Error ofOutput(Error error, const std::string& output) {
     return error.where.find(output) == std::string::npos ? error.at(output) : error;
 }
 
+Status checkCloud(const std::string& path) {
+    STIPPLE_TRY(source, openFileSource(path));
+    STIPPLE_TRY(head, readNow(*source, {0, cloudMagic.size()}));
+    if (std::string_view(reinterpret_cast<const char*>(head.data()), head.size()) != cloudMagic)
+        return Error{ErrorCode::unsupported, "this is no Stipple file, so nothing can be added to it", path,
+                     "convert it together with the others"};
+    return {};
+}
+
 class Conversion {
   public:
     Conversion(const std::vector<std::string>& inputs, const std::string& output,
@@ -166,6 +176,7 @@ class Conversion {
         scanning.crs = options_.crs;
         scanning.input = options_.input;
         STIPPLE_TRY(scan, scanInputs(inputs_, scanning));
+        STIPPLE_CHECK(refuseKnownSources(scan));
         result_.warnings = scan.warnings;
         result_.seconds.scan = watch_.lap();
         auto folder = WorkFolder::open(workFolderPath(output_, options_), identityOf(scan, output_, options_),
@@ -185,8 +196,12 @@ class Conversion {
     Status runIn(const Scan& scan, WorkFolder& folder) {
         // Half of the memory for points that wait, half for those at work.
         STIPPLE_CHECK(checkDisk(scan, memoryBytes_ / 2, folder, result_));
-        STIPPLE_TRY(tiles, tile(scan, {threads_, memoryBytes_ / 2, options_.stop}, folder, progress_));
+        TileOptions tiling{threads_, memoryBytes_ / 2, options_.stop, options_.temporaryBytes};
+        STIPPLE_TRY(tiles, tile(scan, tiling, folder, progress_));
         onDisk_ = tiles.onDisk;
+        result_.dropped = tiles.sums.report;
+        result_.largestRounding = std::max(tiles.sums.report.maxRounding, tiles.sums.maxGridError);
+        STIPPLE_CHECK(checkStrict(tiles.sums, scan));
         for (const std::string& warning : tiles.sums.warnings(scan))
             result_.warnings.push_back(warning);
         result_.seconds.tile = watch_.lap();
@@ -199,6 +214,35 @@ class Conversion {
         result_.temporaryBytes = tiles.pool->spilledBytes();
         result_.seconds.sample = watch_.lap();
         return pack(tiles, built, *blocks);
+    }
+
+    // The same file twice in one cloud is a mistake, or a command that was repeated.
+    Status refuseKnownSources(const Scan& scan) const {
+        if (options_.append.empty())
+            return {};
+        const std::vector<SourceFile>* known = nullptr;
+        for (const ScannedInput& input : scan.inputs)
+            if (input.description().path == options_.append)
+                known = &input.description().madeOf;
+        for (const ScannedInput& input : scan.inputs) {
+            const InputDescription& description = input.description();
+            if (known && description.path != options_.append &&
+                std::find(known->begin(), known->end(), description.source) != known->end())
+                return Error{ErrorCode::invalidArgument,
+                             cat("the cloud ", options_.append, " was made of this file already"),
+                             description.path, "leave it out"};
+        }
+        return {};
+    }
+
+    Status checkStrict(const PointSums& sums, const Scan& scan) const {
+        if (!options_.strict || sums.report.dropped() == 0)
+            return {};
+        std::string reasons;
+        for (const std::string& warning : sums.warnings(scan))
+            if (warning.find(" dropped: ") != std::string::npos)
+                reasons += cat(reasons.empty() ? "" : "; ", warning);
+        return Error{ErrorCode::corrupt, reasons, "", "convert without --strict to leave them out"};
     }
 
     Status pack(const Tiles& tiles, const Built& built, const ScratchFile& blocks) {
@@ -256,8 +300,13 @@ class Conversion {
 Result<ConvertResult> convertFiles(const std::vector<std::string>& inputs, const std::string& output,
                                    const ConvertOptions& options, const ConvertProgress& progress) {
     STIPPLE_CHECK(checkOutput(inputs, output, options.force, cloudMagic));
+    std::vector<std::string> all = inputs;
+    if (!options.append.empty()) {
+        STIPPLE_CHECK(checkCloud(options.append));
+        all.push_back(options.append);
+    }
     try {
-        return Conversion(inputs, output, options, progress).run();
+        return Conversion(all, output, options, progress).run();
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::limitExceeded, "there is not enough memory", "",
                      "allow less with --memory, or use fewer threads"};

@@ -31,11 +31,16 @@ struct ConvertOptions {
     // For points, at least leastMemoryBytes; the process has up to 200 MB besides. 0: a quarter of the
     // machine's.
     std::uint64_t memoryBytes = 0;
-    static constexpr std::uint64_t leastMemoryBytes = std::uint64_t{1} << 28;
+    static constexpr std::uint64_t leastMemoryBytes = std::uint64_t{1} << 26;
     std::string temp = {}; // folder for what does not fit memory, and checkpoints; empty: beside the output
+    // A cloud that the inputs are added to; may be the output, which is replaced when all is done. A source
+    // that it has already (name, points and size) is refused.
+    std::string append = {};
+    bool strict = false; // refuse inputs with points that have to be dropped
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;
-    const std::atomic<bool>* stop = nullptr; // once true, the conversion ends with `cancelled`
+    const std::atomic<bool>* stop = nullptr;              // once true, the conversion ends with `cancelled`
+    std::atomic<std::uint64_t>* temporaryBytes = nullptr; // kept up to date, for a display
 };
 
 // Work done in a phase ("scan", "tile", "sample", "pack"), in points. Called from any thread, one at a time.
@@ -53,6 +58,8 @@ struct ConvertResult {
     WrittenCloud written;
     std::uint64_t temporaryBytes = 0; // of points that went to disk for the time being
     bool resumed = false;             // an earlier run's work was taken up
+    ReadReport dropped;               // points that were left out, by reason
+    double largestRounding = 0;       // distance from a stated coordinate to the cloud's grid, world units
     PhaseSeconds seconds;
     std::vector<std::string> warnings; // one sentence each
 };

@@ -1,7 +1,6 @@
 #include "converter/build/subtree.hpp"
 
 #include "converter/build/morton_order.hpp"
-#include "shared/codec/radix_sort.hpp"
 
 #include <algorithm>
 
@@ -39,35 +38,33 @@ int childIndex(const RootCube& cube, int level, Vec3i p) {
 class RowSorter {
   public:
     RowSorter(const RowLayout& layout, const RootCube& cube, NodeKey key, const std::uint8_t* rows,
-              std::size_t count)
+              KeyedIndex* items, KeyedIndex* other, std::size_t count)
         : layout_(layout), corner_(cube.nodeMin(key)), bits_(cube.nodeBits(key.level)),
-          lowBits_(std::max(0, bits_ - keyLevels)), rows_(rows), items_(count) {}
+          lowBits_(std::max(0, bits_ - keyLevels)), rows_(rows), items_(items), other_(other), count_(count) {
+    }
 
-    void sort() {
+    const KeyedIndex* sort() {
         const int keyBits = 3 * (bits_ - lowBits_), shift = std::max(0, keyBits - sortedBits);
-        for (std::size_t i = 0; i < items_.size(); ++i)
+        for (std::size_t i = 0; i < count_; ++i)
             items_[i] = {mortonKey(relative(i), lowBits_), static_cast<std::uint32_t>(i)};
-        radixSort(items_, keyBits - shift, shift);
-        for (std::size_t i = 0, end = 0; i < items_.size(); i = end) {
-            for (end = i + 1; end < items_.size() && items_[end].key >> shift == items_[i].key >> shift;)
+        items_ = radixSort(items_, other_, count_, keyBits - shift, shift);
+        for (std::size_t i = 0, end = 0; i < count_; i = end) {
+            for (end = i + 1; end < count_ && items_[end].key >> shift == items_[i].key >> shift;)
                 ++end;
             if (end - i > 1)
                 sortRun(i, end);
         }
+        return items_;
     }
-
-    const std::vector<KeyedIndex>& items() const { return items_; }
 
   private:
     const std::uint8_t* row(std::size_t index) const { return rows_ + index * layout_.rowBytes(); }
     Vec3i relative(std::size_t index) const { return layout_.position(row(index)) - corner_; }
 
     void sortRun(std::size_t begin, std::size_t end) {
-        std::sort(items_.begin() + static_cast<std::ptrdiff_t>(begin),
-                  items_.begin() + static_cast<std::ptrdiff_t>(end),
-                  [this](const KeyedIndex& a, const KeyedIndex& b) {
-                      return a.key != b.key ? a.key < b.key : comesBefore(a.index, b.index);
-                  });
+        std::sort(items_ + begin, items_ + end, [this](const KeyedIndex& a, const KeyedIndex& b) {
+            return a.key != b.key ? a.key < b.key : comesBefore(a.index, b.index);
+        });
     }
 
     bool comesBefore(std::uint32_t a, std::uint32_t b) const {
@@ -82,29 +79,44 @@ class RowSorter {
     const Vec3i corner_;
     const int bits_, lowBits_; // of coordinates in the node; those that keys leave out
     const std::uint8_t* rows_;
-    std::vector<KeyedIndex> items_;
+    KeyedIndex *items_, *other_;
+    const std::size_t count_;
 };
 } // namespace
 
-Subtree::Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key,
-                 std::unique_ptr<std::uint8_t[]> rows, std::size_t count)
-    : layout_(&layout), cube_(cube), key_(key), rows_(std::move(rows)),
-      count_(static_cast<std::uint32_t>(count)) {
-    sort();
+std::uint8_t* SubtreeBuffers::rows(std::size_t count, std::size_t rowBytes) {
+    return rows_.of(count * rowBytes);
 }
 
-void Subtree::sort() {
-    constexpr std::size_t ahead = 24;
-    RowSorter sorter(*layout_, cube_, key_, rows_.get(), count_);
-    sorter.sort();
-    const std::vector<KeyedIndex>& items = sorter.items();
-    const std::size_t rowBytes = layout_->rowBytes();
-    auto sorted = std::make_unique_for_overwrite<std::uint8_t[]>(count_ * rowBytes);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        __builtin_prefetch(rows_.get() + items[std::min(i + ahead, items.size() - 1)].index * rowBytes);
-        std::memcpy(sorted.get() + i * rowBytes, rows_.get() + items[i].index * rowBytes, rowBytes);
+template <class T>
+T* SubtreeBuffers::Room<T>::of(std::size_t count) {
+    if (size < count) {
+        items.reset(); // before the larger one, not beside it
+        items = std::make_unique_for_overwrite<T[]>(count);
+        size = count;
     }
-    rows_ = std::move(sorted);
+    return items.get();
+}
+
+Subtree::Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key, SubtreeBuffers& buffers,
+                 std::size_t count)
+    : layout_(&layout), cube_(cube), key_(key), count_(static_cast<std::uint32_t>(count)) {
+    sort(buffers);
+}
+
+void Subtree::sort(SubtreeBuffers& buffers) {
+    constexpr std::size_t ahead = 24;
+    const std::uint8_t* rows = buffers.rows_.items.get();
+    RowSorter sorter(*layout_, cube_, key_, rows, buffers.keys_.of(count_), buffers.otherKeys_.of(count_),
+                     count_);
+    const KeyedIndex* items = sorter.sort();
+    const std::size_t rowBytes = layout_->rowBytes();
+    std::uint8_t* sorted = buffers.sorted_.of(count_ * rowBytes);
+    for (std::size_t i = 0; i < count_; ++i) {
+        __builtin_prefetch(rows + items[std::min<std::size_t>(i + ahead, count_ - 1)].index * rowBytes);
+        std::memcpy(sorted + i * rowBytes, rows + items[i].index * rowBytes, rowBytes);
+    }
+    rows_ = sorted;
 }
 
 void Subtree::splitByCount(std::uint32_t capacity) {

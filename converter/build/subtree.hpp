@@ -7,6 +7,7 @@
 
 #include "converter/build/row_layout.hpp"
 #include "shared/base/result.hpp"
+#include "shared/codec/radix_sort.hpp"
 #include "shared/geometry/node_key.hpp"
 
 #include <array>
@@ -30,11 +31,30 @@ struct SubtreeNode {
     std::uint32_t end() const { return first + count; }
 };
 
+// Memory that one subtree after the other is sorted in: fresh pages cost more than the sorting.
+class SubtreeBuffers {
+  public:
+    // Room for `count` rows, to be filled; what was in there is lost.
+    std::uint8_t* rows(std::size_t count, std::size_t rowBytes);
+
+  private:
+    friend class Subtree;
+    template <class T>
+    struct Room {
+        std::unique_ptr<T[]> items;
+        std::size_t size = 0;
+        T* of(std::size_t count);
+    };
+    Room<std::uint8_t> rows_, sorted_;
+    Room<KeyedIndex> keys_, otherKeys_;
+};
+
 class Subtree {
   public:
-    // Takes `count` rows (fewer than 2^32), all in node `key`, and sorts them. Memory while it runs: twice
-    // the rows and 32 bytes a point.
-    Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key, std::unique_ptr<std::uint8_t[]> rows,
+    // Sorts the `count` rows (fewer than 2^32, all in node `key`) that are in buffers.rows(). The buffers are
+    // borrowed: they outlive the subtree and serve no other meanwhile. Memory: twice the rows and 32 bytes a
+    // point.
+    Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key, SubtreeBuffers& buffers,
             std::size_t count);
 
     // Splits down to leaves of at most `capacity` points …
@@ -49,12 +69,12 @@ class Subtree {
     // Breadth-first; nodes()[0] is the subtree's root. None if there is no point.
     const std::vector<SubtreeNode>& nodes() const { return nodes_; }
 
-    const std::uint8_t* rows() const { return rows_.get(); }
-    const std::uint8_t* row(std::uint32_t rank) const { return rows_.get() + rank * layout_->rowBytes(); }
+    const std::uint8_t* rows() const { return rows_; }
+    const std::uint8_t* row(std::uint32_t rank) const { return rows_ + rank * layout_->rowBytes(); }
     Vec3i position(std::uint32_t rank) const { return layout_->position(row(rank)); }
 
   private:
-    void sort();
+    void sort(SubtreeBuffers& buffers);
     template <class MustSplit>
     void split(MustSplit mustSplit);
     void splitNode(std::size_t index);
@@ -62,7 +82,7 @@ class Subtree {
     const RowLayout* layout_;
     RootCube cube_;
     NodeKey key_;
-    std::unique_ptr<std::uint8_t[]> rows_;
+    const std::uint8_t* rows_ = nullptr; // sorted
     std::uint32_t count_;
     std::vector<SubtreeNode> nodes_;
 };

@@ -190,6 +190,8 @@ class Tiling {
         std::lock_guard lock(progressMutex_);
         done_ += points;
         tiles_.rowsRead += points;
+        if (options_.temporaryBytes && tiles_.pool)
+            *options_.temporaryBytes = tiles_.pool->spilledBytes();
         progress_(measuring_ ? "measure" : "tile", done_, scan_.pointCount);
     }
 

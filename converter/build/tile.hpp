@@ -47,6 +47,7 @@ struct TileOptions {
     int threads = 1;
     std::uint64_t memoryBytes = 0; // for points; see RowPool
     const std::atomic<bool>* stop = nullptr;
+    std::atomic<std::uint64_t>* temporaryBytes = nullptr; // kept up to date
 };
 
 Result<Tiles> tile(const Scan& scan, const TileOptions& options, WorkFolder& folder,

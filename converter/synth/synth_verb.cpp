@@ -51,7 +51,8 @@ synth::SceneKind kindOf(const std::string& name) {
 int run(Arguments arguments) {
     arguments.options.scene = kindOf(arguments.scene);
     auto start = std::chrono::steady_clock::now();
-    cli::Progress progress(arguments.quiet || arguments.json);
+    cli::Progress progress(arguments.quiet || arguments.json ? cli::ProgressStyle::none
+                                                             : cli::ProgressStyle::text);
     auto report =
         synth::synthesize(arguments.output, arguments.options, [&](std::uint64_t done, std::uint64_t total) {
             progress.update("scan", done, total);

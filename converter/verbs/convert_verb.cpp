@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <sys/resource.h>
 
 namespace stipple {
 
@@ -18,7 +19,24 @@ struct ConvertArguments {
     std::string output;
     ConvertOptions options;
     bool json = false;
+    std::string progress = "text";
 };
+
+struct ProcessCost {
+    double cpuSeconds = 0;
+    std::uint64_t peakMemoryBytes = 0;
+};
+
+// Of this process so far.
+ProcessCost processCost() {
+    rusage usage{};
+    ::getrusage(RUSAGE_SELF, &usage);
+    auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return {seconds(usage.ru_utime) + seconds(usage.ru_stime),
+            static_cast<std::uint64_t>(usage.ru_maxrss) * 1024};
+}
 
 double bytesPerPoint(const ConvertResult& result) {
     std::uint64_t points = result.metadata.pointCount;
@@ -44,6 +62,17 @@ cli::Json resultJson(const ConvertResult& result) {
                        {"sample", seconds.sample},
                        {"pack", seconds.pack},
                        {"total", seconds.total()}};
+    const ReadReport& dropped = result.dropped;
+    json["dropped"] = {{"notFinite", dropped.notFinite},
+                       {"outOfRange", dropped.outOfRange},
+                       {"invalid", dropped.invalid},
+                       {"untransformable", dropped.untransformable}};
+    json["largestRounding"] = result.largestRounding;
+    ProcessCost cost = processCost();
+    json["cpuSeconds"] = cost.cpuSeconds;
+    json["peakMemoryBytes"] = cost.peakMemoryBytes;
+    json["temporaryBytes"] = result.temporaryBytes;
+    json["resumed"] = result.resumed;
     json["warnings"] = result.warnings;
     return json;
 }
@@ -56,6 +85,10 @@ void printText(const ConvertResult& result) {
     fmt::print("{}: {} points in {} nodes, {} bytes ({:.2f} a point)\n", result.output, points,
                result.written.nodes, result.written.fileBytes, bytesPerPoint(result));
     fmt::print("CRS: {}\n", cli::crsText(result.metadata.crs));
+    ProcessCost cost = processCost();
+    fmt::print("{:.1f} CPU seconds, {:.0f} MB memory at most, {:.0f} MB temporary on disk\n", cost.cpuSeconds,
+               static_cast<double>(cost.peakMemoryBytes) / 1e6,
+               static_cast<double>(result.temporaryBytes) / 1e6);
     fmt::print("scan {:.2f} s, tile {:.2f} s, sample {:.2f} s, pack {:.2f} s: {:.2f} s, {:.2f} M points/s\n",
                seconds.scan, seconds.tile, seconds.sample, seconds.pack, seconds.total(),
                seconds.total() > 0 ? static_cast<double>(points) / seconds.total() / 1e6 : 0.0);
@@ -65,18 +98,28 @@ void printText(const ConvertResult& result) {
 std::string chosenOutput(const ConvertArguments& arguments, const std::vector<std::string>& files) {
     if (!arguments.output.empty())
         return arguments.output;
+    if (!arguments.options.append.empty())
+        return arguments.options.append;
     std::error_code error;
     std::filesystem::path first = std::filesystem::canonical(arguments.inputs[0], error);
     return !error && std::filesystem::is_directory(first, error) ? defaultOutput({first.string()})
                                                                  : defaultOutput(files);
 }
 
+cli::ProgressStyle progressStyle(const ConvertArguments& arguments) {
+    if (arguments.progress == "json")
+        return cli::ProgressStyle::json;
+    return arguments.progress == "none" || arguments.json ? cli::ProgressStyle::none
+                                                          : cli::ProgressStyle::text;
+}
+
 int runConvert(ConvertArguments& arguments) {
     auto inputs = expandInputs(arguments.inputs, arguments.output);
     if (!inputs)
         return cli::fail("convert", inputs.error());
-    cli::Progress bar(arguments.json);
+    cli::Progress bar(progressStyle(arguments));
     arguments.options.stop = cli::stopOnInterrupt();
+    arguments.options.temporaryBytes = &bar.temporaryBytes;
     std::string output = chosenOutput(arguments, inputs->paths);
     auto result = convertFiles(inputs->paths, output, arguments.options,
                                [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
@@ -96,7 +139,7 @@ int runConvert(ConvertArguments& arguments) {
 
 void addConvertVerb(CLI::App& program, cli::Action& action) {
     auto arguments = std::make_shared<ConvertArguments>();
-    CLI::App* verb = program.add_subcommand("convert", "Convert LAS scans to one .stipple file");
+    CLI::App* verb = program.add_subcommand("convert", "Convert scans to one .stipple file");
     verb->add_option(
             "INPUT", arguments->inputs,
             "Scans, folders of them, or patterns (\"scans/**/*.las\"); together they become one cloud")
@@ -110,6 +153,26 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
         "reprojected, inputs that state none are taken to be in it");
     verb->add_option("--threads", arguments->options.threads, "Threads to use (default: one for each core)")
         ->check(CLI::Range(1, 1024));
+    verb->add_option("--memory", arguments->options.memoryBytes,
+                     "Memory to use, for example 2G; what does not fit goes to disk (default: a quarter of "
+                     "the machine's)")
+        ->transform(CLI::AsSizeValue(false))
+        ->check(CLI::Range(ConvertOptions::leastMemoryBytes, std::uint64_t{1} << 50));
+    verb->add_option("--temp", arguments->options.temp,
+                     "Folder for temporary files and checkpoints (default: beside the output)");
+    verb->add_option(
+        "--append", arguments->options.append,
+        "Add the inputs to this .stipple file (replaced when all is done, unless -o names another)");
+    verb->add_option("--columns", arguments->options.input.columns,
+                     "Columns of text files, for example \"x,y,z,intensity,-,classification\"; - skips one");
+    verb->add_option("--scale", arguments->options.input.scale,
+                     "Grid step for inputs of floating-point coordinates (default: by what they hold)")
+        ->check(CLI::PositiveNumber);
+    verb->add_flag("--strict", arguments->options.strict,
+                   "Refuse inputs with points that can't be kept (no number, out of range, marked invalid)");
+    verb->add_option("--progress", arguments->progress,
+                     "text, json (one object a line, on standard error) or none")
+        ->check(CLI::IsMember({"text", "json", "none"}));
     verb->add_flag("--force", arguments->options.force,
                    "Replace an existing output even if it is no Stipple file (never an input)");
     verb->add_flag("--json", arguments->json, "Print the result as one JSON object; no progress");

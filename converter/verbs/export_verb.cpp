@@ -105,7 +105,7 @@ int runExport(const ExportArguments& arguments) {
     auto options = optionsOf(arguments);
     if (!options)
         return cli::fail("export", options.error());
-    cli::Progress bar(arguments.json);
+    cli::Progress bar(arguments.json ? cli::ProgressStyle::none : cli::ProgressStyle::text);
     auto result = exportFile(arguments.input, arguments.output, *options,
                              [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
                                  bar.update(phase, done, total);

@@ -85,7 +85,7 @@ int runVerify(const VerifyArguments& arguments) {
     auto inputs = expandInputs(arguments.inputs, arguments.file);
     if (!inputs)
         return cli::fail("verify", inputs.error());
-    cli::Progress bar(arguments.json);
+    cli::Progress bar(arguments.json ? cli::ProgressStyle::none : cli::ProgressStyle::text);
     auto report = verifyFile(arguments.file, inputs->paths, arguments.threads, cli::stopOnInterrupt(),
                              [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
                                  bar.update(phase, done, total);
