@@ -15,6 +15,7 @@ constexpr double mostSteps = 68719476736.0;            // 2^36
 constexpr double mostFloat32Steps = 2147483648.0;      // 2^31
 constexpr double mostForcedSteps = 4503599627370496.0; // 2^52: the widest root cube
 constexpr double mostFromZero = 9007199254740992.0;    // 2^53
+constexpr double finestStep = 1e-30;                   // of numbers so small that they are all but zero
 constexpr double largestInteger = 2147483647.0;        // that LAS can count to
 constexpr double offsetSteps = 1e6;     // offsets are multiples of so many steps: short decimals
 constexpr double finestOfExtent = 1e-9; // of numbers with more digits than a scanner measures
@@ -44,11 +45,12 @@ int stepExponent(const BoxD& bounds, const Precision& precision) {
     double magnitude = largestMagnitude(bounds);
     if (magnitude == 0)
         return -3;
-    double half = std::ldexp(1.0, std::ilogb(magnitude) - precision.significandBits);
+    double half = std::max(std::ldexp(1.0, std::ilogb(magnitude) - precision.significandBits), finestStep);
     int exponent = static_cast<int>(std::floor(std::log10(half)));
     double extent = largestExtent(bounds);
     if (precision.significandBits > float32Bits && extent > 0)
-        exponent = std::max(exponent, static_cast<int>(std::ceil(std::log10(extent * finestOfExtent))));
+        exponent = std::max(
+            exponent, static_cast<int>(std::ceil(std::log10(std::max(extent * finestOfExtent, finestStep)))));
     return exponent;
 }
 } // namespace

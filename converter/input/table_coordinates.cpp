@@ -20,7 +20,7 @@ __int128 powerOfTen128(int exponent) {
 
 // The decimals of a power of ten.
 std::optional<int> decimalsOf(double step) {
-    constexpr int fewest = -12, most = 30;
+    constexpr int fewest = -12, most = DecimalRange::mostDecimals;
     for (int decimals = fewest; decimals <= most; ++decimals) {
         std::array<char, 8> text{'1', 'e'};
         std::to_chars(text.data() + 2, text.data() + text.size(), -decimals);
@@ -99,8 +99,14 @@ std::int64_t CoordinateScale::toGrid(int axis, const Number& coordinate, double&
     if (shift >= 0 && shift <= 18 &&
         !__builtin_mul_overflow(coordinate.mantissa, powerOfTen64(shift), &product) && !coordinate.cut)
         return static_cast<std::int64_t>(product - offset_[a]);
+    // As DecimalRange: what is behind the decimals that count is cut before rounding, so bounds stay bounds.
+    std::int64_t mantissa = coordinate.mantissa;
+    if (int extra = -DecimalRange::mostDecimals - coordinate.exponent; extra > 0) {
+        mantissa = extra > 18 ? 0 : mantissa / powerOfTen64(extra);
+        shift += extra;
+    }
     double error = 0;
-    std::int64_t rounded = static_cast<std::int64_t>(shifted(coordinate.mantissa, shift, error) - offset_[a]);
+    std::int64_t rounded = static_cast<std::int64_t>(shifted(mantissa, shift, error) - offset_[a]);
     if (coordinate.cut && error == 0)
         error = std::pow(10.0, shift);
     maxRounding = std::max(maxRounding, error * grid_.scale[axis]);

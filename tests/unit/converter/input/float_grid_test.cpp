@@ -59,6 +59,7 @@ TEST_CASE("no points and one point have a grid") {
     CHECK(floatGrid(BoxD{}, {3}).scale.x > 0);
     CHECK(floatGrid(boxOf({5, 5, 5}, {5, 5, 5}), {-1, 24}).scale.x > 0);
     CHECK(floatGrid(boxOf({0, 0, 0}, {0, 0, 0}), {-1, 53}).scale.x == 0.001);
+    CHECK(floatGrid(boxOf({0, 0, 0}, {4.9e-324, 0, 0}), {-1, 53}).scale.x == 1e-30);
     Grid far = floatGrid(boxOf({largestCoordinate, 0, 0}, {largestCoordinate, 0, 0}), {20});
     CHECK(largestCoordinate / far.scale.x <= 9007199254740992.0);
 }

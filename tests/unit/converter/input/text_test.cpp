@@ -36,6 +36,8 @@ TEST_CASE("text: zeros behind the last decimal are none; too many decimals are r
     CHECK(read.report.maxRounding <= 0.5e-6);
     Read fine = readText("0 0 0\n10000.0000001 0 0\n", "", 1e-7);
     CHECK(fine.points.positions[1].x - fine.points.positions[0].x == 100000000001);
+    // The bounds hold where 31 decimals round up (readAll compares them).
+    CHECK(readText("0.0000000000000899999999999999999 0 1\n").points.size() == 1);
     Read quarter = readText("0.3 0.25 1\n", "", 0.25);
     CHECK(quarter.world(0) == Vec3d{0.25, 0.25, 1});
     CHECK(std::abs(quarter.report.maxRounding - 0.05) < 1e-12);
