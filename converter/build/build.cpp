@@ -12,9 +12,6 @@
 namespace stipple {
 
 namespace {
-// Memory of one subtree at work, which decides how large subtrees are: the same for any --memory, as it
-// decides the bytes of the file.
-constexpr std::uint64_t subtreeBytes = std::uint64_t{1} << 27;
 constexpr std::uint64_t sortBytesPerPoint = 40; // keys and indices twice, ranks
 constexpr std::uint64_t encodeBytes = std::uint64_t{1} << 25;
 constexpr std::size_t spacingSubtrees = 4; // of which the spacing is estimated
@@ -44,7 +41,7 @@ class Builder {
     Builder(Tiles& tiles, const CloudMetadata& metadata, const BuildOptions& options, ScratchFile& blocks,
             Journal& journal, const ConvertProgress& progress)
         : tiles_(tiles), metadata_(metadata), options_(options), blocks_(blocks), journal_(journal),
-          progress_(progress), mostPoints_(subtreeBytes / bytesPerPoint(tiles.layout)) {
+          progress_(progress), mostPoints_(options.subtreeBytes / bytesPerPoint(tiles.layout)) {
         for (BuiltSubtree& built : journal.takeBuilt())
             earlier_.emplace(std::make_pair(built.tier, built.key), std::move(built));
     }
@@ -172,7 +169,7 @@ class Builder {
     // Kept only while so many of the largest fit the memory.
     void giveBack(Buffers buffers) {
         std::lock_guard lock(mutex_);
-        if ((buffers_.size() + 1) * subtreeBytes <= options_.memoryBytes)
+        if ((buffers_.size() + 1) * options_.subtreeBytes <= options_.memoryBytes)
             buffers_.push_back(std::move(buffers));
     }
 

@@ -17,6 +17,7 @@ struct BuildOptions {
     int threads = 1;
     std::uint64_t memoryBytes = 0; // for the subtrees at work
     const std::atomic<bool>* stop = nullptr;
+    std::uint64_t subtreeBytes = WorkSizes{}.subtreeBytes;
 };
 
 struct Built {

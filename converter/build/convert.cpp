@@ -196,7 +196,8 @@ class Conversion {
     Status runIn(const Scan& scan, WorkFolder& folder) {
         // Half of the memory for points that wait, half for those at work.
         STIPPLE_CHECK(checkDisk(scan, memoryBytes_ / 2, folder, result_));
-        TileOptions tiling{threads_, memoryBytes_ / 2, options_.stop, options_.temporaryBytes};
+        TileOptions tiling{threads_, memoryBytes_ / 2, options_.stop, options_.temporaryBytes,
+                           options_.sizes.pointsPerRound};
         STIPPLE_TRY(tiles, tile(scan, tiling, folder, progress_));
         onDisk_ = tiles.onDisk;
         result_.dropped = tiles.sums.report;
@@ -209,7 +210,8 @@ class Conversion {
         STIPPLE_TRY(blocks, folder.scratch("blocks", folder.resumes()));
         STIPPLE_TRY(journal, Journal::open(folder, folder.resumes()));
         result_.metadata = describe(scan, tiles, output_, options_);
-        STIPPLE_TRY(built, build(tiles, result_.metadata, {threads_, memoryBytes_ / 2, options_.stop},
+        STIPPLE_TRY(built, build(tiles, result_.metadata,
+                                 {threads_, memoryBytes_ / 2, options_.stop, options_.sizes.subtreeBytes},
                                  *blocks, journal, progress_));
         result_.temporaryBytes = tiles.pool->spilledBytes();
         result_.seconds.sample = watch_.lap();

@@ -23,6 +23,14 @@
 
 namespace stipple {
 
+// How the work is cut. No option of a user: tests of small clouds set them lower.
+struct WorkSizes {
+    std::uint64_t pointsPerRound = std::uint64_t{1} << 23; // read between two checkpoints
+    // Memory of one subtree at work, which decides how large subtrees are: the same for any memoryBytes, as
+    // it decides the bytes of the file.
+    std::uint64_t subtreeBytes = std::uint64_t{1} << 27;
+};
+
 struct ConvertOptions {
     std::string name = {}; // of the cloud; empty: the output's file name without its extension
     std::string crs = {};  // of the cloud, "EPSG:n" (ScanOptions::crs); empty: what the inputs state
@@ -39,6 +47,7 @@ struct ConvertOptions {
     bool strict = false; // refuse inputs with points that have to be dropped
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;
+    WorkSizes sizes = {};
     const std::atomic<bool>* stop = nullptr;              // once true, the conversion ends with `cancelled`
     std::atomic<std::uint64_t>* temporaryBytes = nullptr; // kept up to date, for a display
 };

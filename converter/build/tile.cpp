@@ -11,8 +11,7 @@ namespace stipple {
 
 namespace {
 constexpr const char* recordName = "tiles";
-constexpr std::uint64_t pointsPerRound = std::uint64_t{1} << 23; // between two checkpoints
-constexpr std::uint64_t pointsPerCell = std::uint64_t{1} << 17;  // aimed at, on surfaces
+constexpr std::uint64_t pointsPerCell = std::uint64_t{1} << 17; // aimed at, on surfaces
 constexpr int deepestCellLevel = CellGrid::deepest;
 
 // Two zero bits between the bits of a cell's coordinate under its node.
@@ -142,7 +141,7 @@ class Tiling {
             worker.slotOfCell.assign(measuring_ ? 0 : tiles_.grid.cells(), 0);
         while (nextRead_ < reads_.size()) {
             std::size_t first = nextRead_, end = first;
-            for (std::uint64_t points = 0; end < reads_.size() && points < pointsPerRound; ++end)
+            for (std::uint64_t points = 0; end < reads_.size() && points < options_.pointsPerRound; ++end)
                 points += reads_[end].points;
             for (Worker& worker : workers)
                 worker.sums = PointSums(scan_.inputs.size());

@@ -48,6 +48,7 @@ struct TileOptions {
     std::uint64_t memoryBytes = 0; // for points; see RowPool
     const std::atomic<bool>* stop = nullptr;
     std::atomic<std::uint64_t>* temporaryBytes = nullptr; // kept up to date
+    std::uint64_t pointsPerRound = WorkSizes{}.pointsPerRound;
 };
 
 Result<Tiles> tile(const Scan& scan, const TileOptions& options, WorkFolder& folder,
