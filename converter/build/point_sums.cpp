@@ -16,11 +16,16 @@ void extremes(const Schema& schema, const PointBatch& batch, std::string_view na
     const Attribute& attribute = schema.attributes[static_cast<std::size_t>(a)];
     if (attribute.type != AttributeType::u16 || attribute.components != 1)
         return;
+    // Locals: bytes may alias what `min` and `max` refer to, and the loop would not vectorize.
+    const std::uint8_t* column = batch.columns[static_cast<std::size_t>(a)].data();
+    std::uint16_t low = min, high = max;
     for (std::size_t i = 0; i < batch.size(); ++i) {
-        std::uint16_t value = batch.value<std::uint16_t>(a, i);
-        min = std::min(min, value);
-        max = std::max(max, value);
+        auto value = loadLe<std::uint16_t>(column + i * sizeof(std::uint16_t));
+        low = std::min(low, value);
+        high = std::max(high, value);
     }
+    min = low;
+    max = high;
 }
 
 ColourExtremes colourExtremes(const Schema& schema, const PointBatch& batch) {

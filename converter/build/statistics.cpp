@@ -105,14 +105,24 @@ PartialStatistics ofColumn(const Attribute& attribute, const Bytes& column) {
     PartialStatistics result;
     std::size_t values = column.size() / sizeof(T);
     T low{}, high{};
-    for (std::size_t i = 0; i < values; ++i) {
-        T value = loadLe<T>(column.data() + i * sizeof(T));
-        if constexpr (std::is_floating_point_v<T>)
+    if constexpr (std::is_integral_v<T>) {
+        result.count = values;
+        if (values > 0)
+            low = high = loadLe<T>(column.data());
+        for (std::size_t i = 0; i < values; ++i) {
+            T value = loadLe<T>(column.data() + i * sizeof(T));
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+    } else {
+        for (std::size_t i = 0; i < values; ++i) {
+            T value = loadLe<T>(column.data() + i * sizeof(T));
             if (std::isnan(value))
                 continue;
-        low = result.count == 0 ? value : std::min(low, value);
-        high = result.count == 0 ? value : std::max(high, value);
-        ++result.count;
+            low = result.count == 0 ? value : std::min(low, value);
+            high = result.count == 0 ? value : std::max(high, value);
+            ++result.count;
+        }
     }
     result.min = static_cast<double>(low);
     result.max = static_cast<double>(high);

@@ -36,7 +36,7 @@ std::vector<std::uint32_t> rankValues(const std::vector<T>& values, std::vector<
     std::vector<KeyedIndex> keyed(values.size());
     for (std::uint32_t i = 0; i < keyed.size(); ++i)
         keyed[i] = {static_cast<T>(values[i] - least), i};
-    radixSort(keyed, bitLength(static_cast<T>(*high - least)));
+    sortByKey(keyed, bitLength(static_cast<T>(*high - least)));
     std::vector<std::uint32_t> ranks(values.size());
     for (std::size_t i = 0; i < keyed.size(); ++i) {
         if (i == 0 || keyed[i].key != keyed[i - 1].key)

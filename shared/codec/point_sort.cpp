@@ -32,7 +32,7 @@ void sortKeys(const KeyLayout& layout, const Quantised& points, std::vector<Keye
     BitPermutation toKey = keyFromPacked(layout);
     for (KeyedIndex& point : keyed)
         point.key = toKey(layout.pack(points[point.index]));
-    radixSort(keyed, layout.keyBits);
+    sortByKey(keyed, layout.keyBits);
 }
 
 // Runs of consecutive points of `sorted`, 8192 points at most, by which layouts are compared. A run is

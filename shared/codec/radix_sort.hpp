@@ -1,6 +1,7 @@
 // Least-significant-digit radix sort of 64-bit keys that carry an index. Stable; time is linear.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -35,10 +36,29 @@ inline KeyedIndex* radixSort(KeyedIndex* items, KeyedIndex* other, std::size_t c
     return items;
 }
 
-// Sorts by the low `bits` bits of the key.
-inline void radixSort(std::vector<KeyedIndex>& items, int bits) {
+// Sorts by the low `bits` bits of the key; items of equal keys keep the order of their indices. Most keys are
+// told apart by their upper bits: only those are sorted by radix, and the short runs that share them by
+// comparison.
+inline KeyedIndex* sortByKey(KeyedIndex* items, KeyedIndex* other, std::size_t count, int bits) {
+    int radixBits = 11;
+    while (radixBits < bits && count >> (radixBits - 6) > 0) // 64 times more values than items
+        radixBits += 11;
+    const int shift = bits > radixBits ? bits - radixBits : 0;
+    items = radixSort(items, other, count, bits - shift, shift);
+    for (std::size_t i = 0, end = 0; shift > 0 && i < count; i = end) {
+        for (end = i + 1; end < count && items[end].key >> shift == items[i].key >> shift;)
+            ++end;
+        if (end - i > 1)
+            std::sort(items + i, items + end, [](const KeyedIndex& a, const KeyedIndex& b) {
+                return a.key != b.key ? a.key < b.key : a.index < b.index;
+            });
+    }
+    return items;
+}
+
+inline void sortByKey(std::vector<KeyedIndex>& items, int bits) {
     std::vector<KeyedIndex> other(items.size());
-    if (radixSort(items.data(), other.data(), items.size(), bits, 0) != items.data())
+    if (sortByKey(items.data(), other.data(), items.size(), bits) != items.data())
         items.swap(other);
 }
 

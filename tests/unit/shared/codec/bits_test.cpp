@@ -73,14 +73,21 @@ TEST_CASE("bits of every width come back, and reading past the end is noticed") 
     CHECK(!from.ok());
 }
 
-TEST_CASE("a radix sort is stable and ascending") {
+TEST_CASE("sorting by key is stable and ascending, for keys that differ in any bits") {
     std::mt19937_64 random(3);
-    std::vector<KeyedIndex> items;
-    for (std::uint32_t i = 0; i < 10000; ++i)
-        items.push_back({random() % 3000 << 20, i});
-    auto expected = items;
-    std::stable_sort(expected.begin(), expected.end(), [](auto& a, auto& b) { return a.key < b.key; });
-    radixSort(items, 32);
-    CHECK(std::equal(items.begin(), items.end(), expected.begin(),
-                     [](auto& a, auto& b) { return a.key == b.key && a.index == b.index; }));
+    for (int bits : {1, 11, 20, 33, 52, 63})
+        for (std::uint32_t count : {0u, 1u, 2u, 100u, 10000u}) {
+            std::vector<KeyedIndex> items;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                // A third spread over all bits, a third alike in the upper ones, a third in the lower.
+                std::uint64_t key = i % 3 == 0 ? random() : i % 3 == 1 ? random() % 300 : random() % 30 << 40;
+                items.push_back({key & ((std::uint64_t{1} << bits) - 1), i});
+            }
+            auto expected = items;
+            std::stable_sort(expected.begin(), expected.end(),
+                             [](auto& a, auto& b) { return a.key < b.key; });
+            sortByKey(items, bits);
+            CHECK(std::equal(items.begin(), items.end(), expected.begin(), expected.end(),
+                             [](auto& a, auto& b) { return a.key == b.key && a.index == b.index; }));
+        }
 }
