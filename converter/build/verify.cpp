@@ -31,8 +31,9 @@ struct Worker {
 
 class Verification {
   public:
-    Verification(const std::string& path, const std::atomic<bool>* stop, const ConvertProgress& progress)
-        : path_(path), stop_(stop), progress_(progress) {}
+    Verification(const std::string& path, const InputOptions& reading, const std::atomic<bool>* stop,
+                 const ConvertProgress& progress)
+        : path_(path), reading_(reading), stop_(stop), progress_(progress) {}
 
     Result<VerifyReport> run(const std::vector<std::string>& inputs, int threads) {
         STIPPLE_CHECK(open(threads));
@@ -197,6 +198,7 @@ class Verification {
     Status compareWithInputs(const std::vector<std::string>& inputs, const CloudMetadata& metadata,
                              const PointStore& store, int threads) {
         ScanOptions options;
+        options.input = reading_;
         if (metadata.crs.known())
             options.target = metadata.crs; // as they were reprojected for the file
         STIPPLE_TRY(scan, scanInputs(inputs, options));
@@ -214,6 +216,7 @@ class Verification {
     }
 
     const std::string& path_;
+    const InputOptions& reading_;
     const std::atomic<bool>* stop_;
     const ConvertProgress& progress_;
     std::vector<Worker> workers_;
@@ -226,9 +229,10 @@ class Verification {
 } // namespace
 
 Result<VerifyReport> verifyFile(const std::string& path, const std::vector<std::string>& inputs, int threads,
-                                const std::atomic<bool>* stop, const ConvertProgress& progress) {
+                                const std::atomic<bool>* stop, const ConvertProgress& progress,
+                                const InputOptions& reading) {
     try {
-        return Verification(path, stop, progress).run(inputs, threadCount(threads));
+        return Verification(path, reading, stop, progress).run(inputs, threadCount(threads));
     } catch (const std::bad_alloc&) {
         return Error{ErrorCode::limitExceeded, "there is not enough memory to compare all points", path, ""};
     }

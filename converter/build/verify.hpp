@@ -23,11 +23,13 @@ struct VerifyReport {
 
 // Reads the whole file: every block's checksum, every node decodes, counts agree, each point lies in its node
 // and in the bounds, inner nodes keep their minimum distance, statistics and hash are those of the metadata.
-// With `inputs`, also that the file holds exactly their points (all in memory).
+// With `inputs`, also that the file holds exactly their points (all in memory). `reading` must be as it was
+// for the conversion: another grid step or other columns make other points.
 //
 // An error is returned where there is nothing to judge: no such file, no Stipple file, an input that can't be
 // read. Everything else that is wrong is a fault in the report.
 Result<VerifyReport> verifyFile(const std::string& path, const std::vector<std::string>& inputs, int threads,
-                                const std::atomic<bool>* stop, const ConvertProgress& progress);
+                                const std::atomic<bool>* stop, const ConvertProgress& progress,
+                                const InputOptions& reading = {});
 
 } // namespace stipple

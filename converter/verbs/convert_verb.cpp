@@ -3,6 +3,7 @@
 #include "converter/input/expand.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
+#include "converter/verbs/reading_options.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -163,11 +164,7 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
     verb->add_option(
         "--append", arguments->options.append,
         "Add the inputs to this .stipple file (replaced when all is done, unless -o names another)");
-    verb->add_option("--columns", arguments->options.input.columns,
-                     "Columns of text files, for example \"x,y,z,intensity,-,classification\"; - skips one");
-    verb->add_option("--scale", arguments->options.input.scale,
-                     "Grid step for inputs of floating-point coordinates (default: by what they hold)")
-        ->check(CLI::PositiveNumber);
+    cli::addReadingOptions(*verb, arguments->options.input);
     verb->add_flag("--strict", arguments->options.strict,
                    "Refuse inputs with points that can't be kept (no number, out of range, marked invalid)");
     verb->add_option("--progress", arguments->progress,

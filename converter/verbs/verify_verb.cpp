@@ -3,6 +3,7 @@
 #include "converter/input/expand.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
+#include "converter/verbs/reading_options.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -15,6 +16,7 @@ namespace {
 struct VerifyArguments {
     std::string file;
     std::vector<std::string> inputs;
+    InputOptions reading;
     int threads = 0;
     bool json = false;
 };
@@ -86,10 +88,12 @@ int runVerify(const VerifyArguments& arguments) {
     if (!inputs)
         return cli::fail("verify", inputs.error());
     cli::Progress bar(arguments.json ? cli::ProgressStyle::none : cli::ProgressStyle::text);
-    auto report = verifyFile(arguments.file, inputs->paths, arguments.threads, cli::stopOnInterrupt(),
-                             [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
-                                 bar.update(phase, done, total);
-                             });
+    auto report = verifyFile(
+        arguments.file, inputs->paths, arguments.threads, cli::stopOnInterrupt(),
+        [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
+            bar.update(phase, done, total);
+        },
+        arguments.reading);
     bar.finish();
     if (!report)
         return cli::fail("verify", report.error());
@@ -109,6 +113,7 @@ void addVerifyVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("--against", arguments->inputs,
                      "Scans, folders or patterns, as given to convert: prove that the file holds exactly "
                      "their points, every attribute equal");
+    cli::addReadingOptions(*verb, arguments->reading);
     verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
         ->check(CLI::Range(1, 1024));
     verb->add_flag("--json", arguments->json, "Print the report as one JSON object; no progress");

@@ -147,6 +147,19 @@ TEST_CASE_METHOD(Fixture, "an attribute the file lacks is a fault", "[verify]") 
     CHECK(report.faults[0].find("Red") != std::string::npos);
 }
 
+TEST_CASE_METHOD(Fixture, "text is compared as the columns and grid step say", "[verify]") {
+    std::string text = folder / "points.txt";
+    std::ofstream(text) << "7 1.26 2.5 100\n9 2.74 3.5 200\n";
+    ConvertOptions options;
+    options.input = {"classification,x,y,z", 0.5};
+    convertOrFail({text}, altered, options);
+    auto same = verifyFile(altered, {text}, 1, nullptr, noProgress, options.input);
+    REQUIRE(same.ok());
+    CHECK(same->passed());
+    CHECK(same->comparison->equalPoints == 2);
+    CHECK_FALSE(verify({text}).passed()); // as x y z intensity
+}
+
 TEST_CASE_METHOD(Fixture, "every flipped byte of a node is found", "[verify]") {
     Bytes bytes = fileBytes(cloud);
     std::mt19937_64 random(1);
