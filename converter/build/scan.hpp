@@ -50,8 +50,4 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
 // those that the cloud lacks, or has with another type or scale, are returned by name.
 std::vector<std::string> mapOnto(Scan& scan, const Grid& grid, const Schema& schema);
 
-// What a cloud's GPS Time counts from is the attribute's description.
-inline constexpr const char* standardGpsTimeText = "adjusted standard GPS time";
-inline constexpr const char* weekGpsTimeText = "GPS week time";
-
 } // namespace stipple

@@ -24,6 +24,22 @@ Result<OpenCloud> openCloud(const std::string& path) {
     return OpenCloud{std::move(source), std::move(reader).value()};
 }
 
+// What the times count from is said once: by the description's kind, as by the scans that the cloud was made
+// of.
+void takeGpsTimeKind(InputDescription& description) {
+    int index = description.schema.find(attribute_names::gpsTime);
+    if (index < 0)
+        return;
+    std::string& text = description.schema.attributes[static_cast<std::size_t>(index)].description;
+    if (text == standardGpsTimeText)
+        description.gpsTime = GpsTimeKind::adjustedStandard;
+    else if (text == weekGpsTimeText)
+        description.gpsTime = GpsTimeKind::week;
+    else
+        return;
+    text.clear();
+}
+
 class CloudInput final : public PointInput {
   public:
     static Result<std::unique_ptr<PointInput>> open(const std::string& path) {
@@ -39,6 +55,7 @@ class CloudInput final : public PointInput {
         d.crs = metadata.crs;
         d.bounds = metadata.bounds;
         d.madeOf = metadata.sources;
+        takeGpsTimeKind(d);
         input->pointHash_ = metadata.pointHash;
         std::uint64_t points = 0;
         STIPPLE_CHECK(cloud.reader->visitNodes([&](const NodeEntry& entry) -> Status {

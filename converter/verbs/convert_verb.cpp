@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <memory>
 #include <sys/resource.h>
 
@@ -114,7 +115,18 @@ cli::ProgressStyle progressStyle(const ConvertArguments& arguments) {
                                                           : cli::ProgressStyle::text;
 }
 
+// What is freed and asked for again a thousand times a second stays with the process: giving pages back to
+// the system and getting them anew costs some 5 % of a conversion.
+void keepFreedMemory() {
+#ifdef __GLIBC__
+    constexpr int keptBytes = 1 << 28, mappedFromBytes = 1 << 25;
+    ::mallopt(M_TRIM_THRESHOLD, keptBytes);
+    ::mallopt(M_MMAP_THRESHOLD, mappedFromBytes);
+#endif
+}
+
 int runConvert(ConvertArguments& arguments) {
+    keepFreedMemory();
     auto inputs = expandInputs(arguments.inputs, arguments.output);
     if (!inputs)
         return cli::fail("convert", inputs.error());
