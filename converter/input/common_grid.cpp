@@ -138,6 +138,13 @@ double extentFrom(double offset, int axis, const std::vector<Grid>& grids, const
     return high - low;
 }
 
+// 0 and -0 are one offset, but not the same bytes in a file: without this the first input would choose.
+Grid withoutNegativeZero(Grid grid) {
+    for (int axis = 0; axis < 3; ++axis)
+        grid.offset[axis] += 0.0;
+    return grid;
+}
+
 AxisMap axisMap(double fromScale, double fromOffset, double toScale, double toOffset) {
     AxisMap map;
     if (fromScale == toScale && fromOffset == toOffset)
@@ -184,7 +191,7 @@ double AxisMap::errorSteps(std::int64_t input) const {
 Grid commonGrid(const std::vector<Grid>& grids, const std::vector<BoxI>& boxes) {
     bool same = std::all_of(grids.begin(), grids.end(), [&](const Grid& grid) { return grid == grids[0]; });
     if (same)
-        return grids[0];
+        return withoutNegativeZero(grids[0]);
     Grid result;
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> scales, offsets;
@@ -201,7 +208,7 @@ Grid commonGrid(const std::vector<Grid>& grids, const std::vector<BoxI>& boxes) 
         while (extent / result.scale[axis] >= mostSteps)
             result.scale[axis] = tenTimes(result.scale[axis]);
     }
-    return result;
+    return withoutNegativeZero(result);
 }
 
 GridMap gridMap(const Grid& from, const Grid& to) {

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -52,6 +53,14 @@ TEST_CASE("the common grid does not depend on the order of the inputs", "[grid]"
     Grid a = uniform(0.01, 1000), b = uniform(0.002, -40), c = uniform(0.05, 3.5);
     CHECK(commonGrid({a, b, c}) == commonGrid({c, a, b}));
     CHECK(commonGrid({a, b, c}) == commonGrid({b, c, a}));
+}
+
+TEST_CASE("an offset of -0 is 0, whichever input has it", "[grid]") {
+    Grid negative = uniform(0.01, -0.0), positive = uniform(0.01, 0.0), fine = uniform(0.001, -0.0);
+    for (const Grid& grid : {commonGrid({negative}), commonGrid({negative, positive}),
+                             commonGrid({positive, fine}), commonGrid({fine, positive})})
+        for (int axis = 0; axis < 3; ++axis)
+            CHECK_FALSE(std::signbit(grid.offset[axis]));
 }
 
 TEST_CASE("offsets with stray digits are rounded to the finest scale, and the error is told", "[grid]") {
