@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds everything, then shows point scans in the browser: those named, or a sample made here.
-#   scripts/demo.sh [SCAN...]        LAS files or .stipple files
+#   scripts/demo.sh [SCAN...]        scans of any kind that convert reads, or .stipple files
 # Options through the environment: STIPPLE_PORT (default 8017), STIPPLE_SAMPLE_POINTS (default 2000000).
 set -euo pipefail
 scans=()

@@ -48,7 +48,8 @@ void addViewVerb(CLI::App& program, cli::Action& action) {
     };
     auto options = std::make_shared<Options>();
     CLI::App* verb = program.add_subcommand("view", "Convert scans if needed, serve them, print the address");
-    verb->add_option("FILE", options->inputs, "LAS files, .stipple files, or folders of .stipple files")
+    verb->add_option("FILE", options->inputs,
+                     "Scans of any kind that convert reads, .stipple files, or folders of .stipple files")
         ->required();
     verb->add_flag("--open", options->opensBrowser, "Open the address in the browser");
     server::addServingOptions(*verb, options->serving);
