@@ -1,5 +1,6 @@
 #include "converter/input/pcd_header.hpp"
 
+#include "converter/input/words.hpp"
 #include "shared/base/text.hpp"
 
 #include <array>
@@ -16,17 +17,6 @@ constexpr std::array<std::string_view, 10> keywords{"VERSION", "FIELDS", "SIZE",
                                                     "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
 
 using Words = std::vector<std::string>;
-
-Words wordsOf(const std::string& line) {
-    Words words;
-    std::size_t at = 0;
-    while ((at = line.find_first_not_of(" \t", at)) != std::string::npos) {
-        std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-        words.push_back(line.substr(at, end - at));
-        at = end;
-    }
-    return words;
-}
 
 bool readInteger(const std::string& word, std::uint64_t& value) {
     auto read = std::from_chars(word.data(), word.data() + word.size(), value);

@@ -1,5 +1,6 @@
 #include "converter/input/ply_header.hpp"
 
+#include "converter/input/words.hpp"
 #include "shared/base/text.hpp"
 
 #include <array>
@@ -26,17 +27,6 @@ constexpr std::array typeNames{
     TypeName{"float", AttributeType::f32},  TypeName{"float32", AttributeType::f32},
     TypeName{"double", AttributeType::f64}, TypeName{"float64", AttributeType::f64},
 };
-
-std::vector<std::string> wordsOf(const std::string& line) {
-    std::vector<std::string> words;
-    std::size_t at = 0;
-    while ((at = line.find_first_not_of(" \t", at)) != std::string::npos) {
-        std::size_t end = std::min(line.find_first_of(" \t", at), line.size());
-        words.push_back(line.substr(at, end - at));
-        at = end;
-    }
-    return words;
-}
 
 class HeaderReader {
   public:
