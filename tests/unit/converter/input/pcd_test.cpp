@@ -1,4 +1,3 @@
-#include "tests/support/data.hpp"
 #include "tests/unit/converter/input/read_table.hpp"
 
 #include <cmath>
@@ -214,23 +213,17 @@ TEST_CASE("PCD: damaged anywhere, it is refused or read") {
 
 TEST_CASE("PCD: files of other programs are read or refused") {
     STIPPLE_NEEDS_DATA();
-    auto read = [](const std::string& name) {
-        auto input = openInput(dataPath("other/" + name));
-        INFO((input.ok() ? name : input.error().sentence()));
-        REQUIRE(input.ok());
-        return readAll(**input);
-    };
-    Read room = read("room_scan1.pcd");
+    Read room = readFile("room_scan1.pcd");
     CHECK(room.points.size() + room.report.dropped() == 112586);
-    Read mug = read("table_scene_mug_stereo_textured.pcd");
+    Read mug = readFile("table_scene_mug_stereo_textured.pcd");
     CHECK(mug.points.size() + mug.report.notFinite == 307200);
     CHECK(mug.schema().find("Red") >= 0);
     CHECK(mug.warns("VIEWPOINT"));
-    CHECK(read("simple-ascii.pcd").points.size() == 213);
-    Read autzen = read("autzen-utm.pcd");
+    CHECK(readFile("simple-ascii.pcd").points.size() == 213);
+    Read autzen = readFile("autzen-utm.pcd");
     CHECK(autzen.points.size() == 1065);
     CHECK(autzen.type("Intensity") == AttributeType::u16);
     CHECK(autzen.type("GPS Time") == AttributeType::f64);
     CHECK(autzen.type("Scan Angle Rank") == AttributeType::i8);
-    CHECK(read("missingheader.pcd").points.size() == 10); // as the text that it is
+    CHECK(readFile("missingheader.pcd").points.size() == 10); // as the text that it is
 }

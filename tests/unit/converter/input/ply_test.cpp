@@ -1,4 +1,3 @@
-#include "tests/support/data.hpp"
 #include "tests/unit/converter/input/read_table.hpp"
 
 #include <algorithm>
@@ -252,13 +251,7 @@ TEST_CASE("PLY: damaged anywhere, it is refused or read") {
 
 TEST_CASE("PLY: files of other programs are read") {
     STIPPLE_NEEDS_DATA();
-    auto read = [](const std::string& name) {
-        auto input = openInput(dataPath("other/" + name));
-        INFO((input.ok() ? name : input.error().sentence()));
-        REQUIRE(input.ok());
-        return readAll(**input);
-    };
-    Read bunny = read("bun_zipper.ply");
+    Read bunny = readFile("bun_zipper.ply");
     CHECK(bunny.points.size() == 35947);
     CHECK(bunny.type("confidence") == AttributeType::f32);
     CHECK(bunny.type("Intensity") == AttributeType::u16);
@@ -266,10 +259,10 @@ TEST_CASE("PLY: files of other programs are read") {
     CHECK(bunny.report.maxRounding <= 0.5e-10); // some have 12 decimals
     Vec3d first = bunny.world(0);
     CHECK(std::abs(first.x + 0.0378297) < 1e-12);
-    CHECK(read("mesh.ply").points.size() == 4);
-    CHECK(read("simple_binary.ply").points.size() == 3);
-    CHECK(read("simple_text.ply").world(0) == Vec3d{-1, 0, 0});
-    Read extra = read("text_extradim.ply");
+    CHECK(readFile("mesh.ply").points.size() == 4);
+    CHECK(readFile("simple_binary.ply").points.size() == 3);
+    CHECK(readFile("simple_text.ply").world(0) == Vec3d{-1, 0, 0});
+    Read extra = readFile("text_extradim.ply");
     CHECK(extra.column<std::uint16_t>("Blue") == std::vector<std::uint16_t>{64});
     CHECK(extra.column<std::int32_t>("omg") == std::vector<std::int32_t>{1234});
     CHECK(extra.column<float>("nx") == std::vector<float>{-0.0237552f});

@@ -1,4 +1,3 @@
-#include "tests/support/data.hpp"
 #include "tests/unit/converter/input/read_table.hpp"
 
 #include <cmath>
@@ -73,17 +72,11 @@ TEST_CASE("PTX: damaged anywhere, it is refused or read") {
 
 TEST_CASE("PTX: files of other programs are read") {
     STIPPLE_NEEDS_DATA();
-    auto read = [](const std::string& name) {
-        auto input = openInput(dataPath("other/" + name));
-        INFO((input.ok() ? name : input.error().sentence()));
-        REQUIRE(input.ok());
-        return readAll(**input);
-    };
-    Read colour = read("1.2-with-color.ptx");
+    Read colour = readFile("1.2-with-color.ptx");
     CHECK(colour.points.size() == 1065);
     CHECK(colour.column<std::uint16_t>("Red")[0] == 68);
     CHECK(colour.description.grid.scale.x == 0.01);
-    Read moved = read("multiple-and-transform.ptx");
+    Read moved = readFile("multiple-and-transform.ptx");
     CHECK(moved.points.size() == 8);
     CHECK(std::abs(moved.world(0).x - 637012.24) < 1e-9);
     CHECK(std::abs(moved.world(0).z - 431.66) < 1e-9);

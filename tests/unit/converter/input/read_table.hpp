@@ -6,6 +6,7 @@
 #include "converter/input/ptx_input.hpp"
 #include "converter/input/text_input.hpp"
 #include "shared/io/memory_source.hpp"
+#include "tests/support/data.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -103,6 +104,14 @@ inline Read readTable(Opener open, Bytes bytes, const InputOptions& options = {}
 }
 inline Read readTable(Opener open, const std::string& text, const InputOptions& options = {}) {
     return readTable(open, bytesOf(text), options);
+}
+
+// One of the real scans.
+inline Read readFile(const std::string& name) {
+    auto input = openInput(dataPath("other/" + name));
+    INFO((input.ok() ? name : input.error().sentence()));
+    REQUIRE(input.ok());
+    return readAll(**input);
 }
 
 // The sentence with which a file is refused.

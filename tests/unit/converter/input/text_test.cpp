@@ -1,5 +1,4 @@
 #include "converter/input/text_guess.hpp"
-#include "tests/support/data.hpp"
 #include "tests/unit/converter/input/read_table.hpp"
 
 #include <cmath>
@@ -189,16 +188,10 @@ TEST_CASE("text is told from other files by its first lines") {
 
 TEST_CASE("PTS: files of other programs are read") {
     STIPPLE_NEEDS_DATA();
-    auto read = [](const std::string& name) {
-        auto input = openInput(dataPath("other/" + name));
-        INFO((input.ok() ? name : input.error().sentence()));
-        REQUIRE(input.ok());
-        return readAll(**input);
-    };
-    Read autzen = read("autzen.pts");
+    Read autzen = readFile("autzen.pts");
     CHECK(autzen.points.size() == 10);
     CHECK(autzen.description.grid.scale.x == 1e-6);
     CHECK(autzen.column<std::uint16_t>("Intensity")[0] == 2048 - 1613);
     CHECK(std::abs(autzen.world(0).x - 636110.300003) < 1e-9);
-    CHECK(read("test.pts").points.size() == 19);
+    CHECK(readFile("test.pts").points.size() == 19);
 }
