@@ -35,60 +35,87 @@ void RowPool::release(Buffer buffer) {
     free_.push_back(std::move(buffer));
 }
 
-void RowPool::noteFull(Full full) {
+void RowPool::note(Place block, bool isFull) {
     std::lock_guard lock(mutex_);
-    full_.push_back(full);
-}
-
-void RowPool::add(RowStore* store) {
-    std::lock_guard lock(mutex_);
-    stores_.push_back(store);
+    if (isFull)
+        full_.push_back(block);
+    else
+        open_.push_back(block);
 }
 
 void RowPool::forget(const RowStore* store) {
     std::lock_guard lock(mutex_);
-    std::erase_if(full_, [&](const Full& full) { return full.store == store; });
-    std::erase(stores_, store);
+    auto isOfStore = [&](const Place& place) { return place.store == store; };
+    std::erase_if(full_, isOfStore);
+    std::erase_if(open_, isOfStore);
 }
 
-// The oldest full block; where there is none, one that is half full, a quarter full …
 Result<RowPool::Buffer> RowPool::moveOneOut() {
     if (!file_)
         return Error{ErrorCode::limitExceeded, "the points do not fit the memory allowed", "",
                      "allow more with --memory"};
     for (;;) {
-        Full full{};
+        Place full{};
         {
             std::lock_guard lock(mutex_);
-            if (full_.empty())
-                break;
-            full = full_.front();
-            full_.pop_front();
+            if (!free_.empty()) {
+                Buffer buffer = std::move(free_.back());
+                free_.pop_back();
+                return buffer;
+            }
+            if (!full_.empty()) {
+                full = full_.front();
+                full_.pop_front();
+            }
         }
-        STIPPLE_TRY(buffer, full.store->moveOut(full.cell, full.block, 1));
-        if (buffer)
-            return std::move(buffer);
-    }
-    std::vector<RowStore*> stores;
-    {
-        std::lock_guard lock(mutex_);
-        stores = stores_;
-    }
-    for (std::uint32_t part = 2; part != 0; part *= 2)
-        for (RowStore* store : stores) {
-            STIPPLE_TRY(buffer, store->moveOutPartial(std::max(1u, store->rowsPerBlock_ / part)));
+        if (full.store) {
+            STIPPLE_TRY(buffer, full.store->moveOut(full.cell, full.block));
             if (buffer)
                 return std::move(buffer);
+            continue;
         }
-    return Error{ErrorCode::limitExceeded, "no buffer is left for the points", "",
-                 "allow more memory with --memory, or fewer threads"};
+        std::lock_guard moving(moving_);
+        {
+            std::lock_guard lock(mutex_);
+            if (!free_.empty() || !full_.empty())
+                continue; // another thread has been here
+        }
+        STIPPLE_TRY(moved, movePartsOut());
+        if (moved == 0)
+            return Error{ErrorCode::limitExceeded, "no buffer is left for the points", "",
+                         "allow more memory with --memory, or fewer threads"};
+    }
+}
+
+Result<std::size_t> RowPool::movePartsOut() {
+    std::vector<Place> places;
+    {
+        std::lock_guard lock(mutex_);
+        places.swap(open_);
+    }
+    struct Part {
+        std::uint32_t rows;
+        Place place;
+    };
+    std::vector<Part> parts;
+    for (const Place& place : places)
+        if (std::uint32_t rows = place.store->rowsInMemory(place.cell, place.block); rows > 0)
+            parts.push_back({rows, place});
+    auto chosen = parts.begin() + static_cast<std::ptrdiff_t>((parts.size() + 3) / 4);
+    std::nth_element(parts.begin(), chosen, parts.end(),
+                     [](const Part& a, const Part& b) { return a.rows > b.rows; });
+    for (auto part = chosen; part != parts.end(); ++part)
+        note(part->place, false);
+    for (auto part = parts.begin(); part != chosen; ++part) {
+        STIPPLE_TRY(buffer, part->place.store->moveOut(part->place.cell, part->place.block));
+        release(std::move(buffer));
+    }
+    return static_cast<std::size_t>(chosen - parts.begin());
 }
 
 RowStore::RowStore(RowPool& pool, std::size_t rowBytes, std::size_t cells)
     : pool_(pool), rowBytes_(rowBytes),
-      rowsPerBlock_(static_cast<std::uint32_t>(RowPool::blockBytes / rowBytes)), cells_(cells) {
-    pool_.add(this);
-}
+      rowsPerBlock_(static_cast<std::uint32_t>(RowPool::blockBytes / rowBytes)), cells_(cells) {}
 
 RowStore::~RowStore() {
     pool_.forget(this);
@@ -101,30 +128,30 @@ Status RowStore::append(std::size_t index, const std::uint8_t* rows, std::size_t
     Cell& cell = cells_[index];
     RowPool::Buffer spare; // taken without the cell's lock, as that may have to wait for another cell
     while (count > 0) {
-        bool filled = false;
-        std::size_t filledBlock = 0;
+        bool filled = false, begun = false;
+        std::size_t block = 0;
         {
             std::lock_guard lock(cell.mutex);
             bool hasRoom =
                 !cell.blocks.empty() && cell.blocks.back().ram && cell.blocks.back().rows < rowsPerBlock_;
             if (!hasRoom && spare) {
                 cell.blocks.emplace_back().ram = std::move(spare);
-                hasRoom = true;
+                hasRoom = begun = true;
             }
             if (hasRoom) {
-                Block& block = cell.blocks.back();
-                std::size_t part = std::min<std::size_t>(count, rowsPerBlock_ - block.rows);
-                std::memcpy(block.ram.get() + block.rows * rowBytes_, rows, part * rowBytes_);
-                block.rows += static_cast<std::uint32_t>(part);
+                Block& last = cell.blocks.back();
+                std::size_t part = std::min<std::size_t>(count, rowsPerBlock_ - last.rows);
+                std::memcpy(last.ram.get() + last.rows * rowBytes_, rows, part * rowBytes_);
+                last.rows += static_cast<std::uint32_t>(part);
                 cell.count += part;
                 rows += part * rowBytes_;
                 count -= part;
-                filled = block.rows == rowsPerBlock_;
-                filledBlock = cell.blocks.size() - 1;
+                filled = last.rows == rowsPerBlock_;
+                block = cell.blocks.size() - 1;
             }
         }
-        if (filled)
-            pool_.noteFull({this, index, filledBlock});
+        if (filled || begun)
+            pool_.note({this, index, block}, filled);
         if (count > 0 && !spare) {
             STIPPLE_TRY(buffer, pool_.acquire());
             spare = std::move(buffer);
@@ -148,32 +175,19 @@ Status RowStore::save(Block& block) {
     return {};
 }
 
-Result<RowPool::Buffer> RowStore::moveOut(std::size_t index, std::size_t number, std::uint32_t leastRows) {
+Result<RowPool::Buffer> RowStore::moveOut(std::size_t index, std::size_t number) {
     Cell& cell = cells_[index];
     std::lock_guard lock(cell.mutex);
-    if (number >= cell.blocks.size())
+    if (number >= cell.blocks.size() || !cell.blocks[number].ram)
         return RowPool::Buffer{};
-    Block& block = cell.blocks[number];
-    if (!block.ram || block.rows < leastRows)
-        return RowPool::Buffer{};
-    STIPPLE_CHECK(save(block));
-    return std::move(block.ram);
+    STIPPLE_CHECK(save(cell.blocks[number]));
+    return std::move(cell.blocks[number].ram);
 }
 
-Result<RowPool::Buffer> RowStore::moveOutPartial(std::uint32_t leastRows) {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-        std::size_t index = nextPartial_++ % cells_.size(), last = 0;
-        {
-            std::lock_guard lock(cells_[index].mutex);
-            if (cells_[index].blocks.empty())
-                continue;
-            last = cells_[index].blocks.size() - 1;
-        }
-        STIPPLE_TRY(buffer, moveOut(index, last, leastRows));
-        if (buffer)
-            return std::move(buffer);
-    }
-    return RowPool::Buffer{};
+std::uint32_t RowStore::rowsInMemory(std::size_t index, std::size_t number) {
+    Cell& cell = cells_[index];
+    std::lock_guard lock(cell.mutex);
+    return number < cell.blocks.size() && cell.blocks[number].ram ? cell.blocks[number].rows : 0;
 }
 
 Status RowStore::drain(std::size_t index, bool keep,
@@ -201,8 +215,11 @@ Status RowStore::drain(std::size_t index, bool keep,
         if (rows > 0)
             STIPPLE_CHECK(take(from, rows));
         if (keep && ram) {
-            std::lock_guard lock(cell.mutex);
-            cell.blocks[i].ram = std::move(ram);
+            {
+                std::lock_guard lock(cell.mutex);
+                cell.blocks[i].ram = std::move(ram);
+            }
+            pool_.note({this, index, i}, rows == rowsPerBlock_); // who looked meanwhile took it for gone
         } else {
             pool_.release(std::move(ram));
         }

@@ -4,8 +4,9 @@
 //   RowStore   cells; each has its rows in blocks of one buffer's size
 //
 // A block fills in memory. When every buffer is taken, the oldest full block goes to the file and its buffer
-// is used again, so memory is constant. What has been drained gives back its buffers and its place on the
-// disk.
+// is used again, so memory is constant; where no block is full, the fullest quarter of them goes. What that
+// costs depends on the number of buffers, not on that of the cells. What has been drained gives back its
+// buffers and its place on the disk.
 #pragma once
 
 #include "shared/base/bytes.hpp"
@@ -39,7 +40,7 @@ class RowPool {
 
   private:
     friend class RowStore;
-    struct Full {
+    struct Place {
         RowStore* store;
         std::size_t cell, block;
     };
@@ -47,17 +48,19 @@ class RowPool {
 
     Result<Buffer> acquire();
     void release(Buffer buffer);
-    void noteFull(Full full);
-    void add(RowStore* store);
+    void note(Place block, bool isFull); // that it is in memory
     void forget(const RowStore* store);
     Result<Buffer> moveOneOut();
+    Result<std::size_t> movePartsOut(); // how many
 
     ScratchFile* file_;
     std::size_t most_, allocated_ = 0;
     std::mutex mutex_;
     std::vector<Buffer> free_;
-    std::deque<Full> full_; // oldest first; entries may be out of date
-    std::vector<RowStore*> stores_;
+    // Blocks in memory; entries may be out of date.
+    std::deque<Place> full_; // oldest first
+    std::vector<Place> open_;
+    std::mutex moving_; // one thread at a time looks for parts to move out
     std::atomic<std::uint64_t> spilledBytes_{0};
 };
 
@@ -104,17 +107,14 @@ class RowStore {
     };
 
     Status save(Block& block);
-    // Moves a block to the file and returns its buffer; null if there is none to move, or it holds fewer
-    // rows.
-    Result<RowPool::Buffer> moveOut(std::size_t cell, std::size_t block, std::uint32_t leastRows);
-    // Moves out one not yet full block of at least `leastRows` rows.
-    Result<RowPool::Buffer> moveOutPartial(std::uint32_t leastRows);
+    // Moves a block to the file and returns its buffer; null if it is not in memory.
+    Result<RowPool::Buffer> moveOut(std::size_t cell, std::size_t block);
+    std::uint32_t rowsInMemory(std::size_t cell, std::size_t block);
 
     RowPool& pool_;
     std::size_t rowBytes_;
     std::uint32_t rowsPerBlock_;
     std::deque<Cell> cells_; // in place: mutexes don't move
-    std::atomic<std::size_t> nextPartial_{0};
 };
 
 } // namespace stipple

@@ -270,3 +270,23 @@ TEST_CASE("a full disk is reported by whoever needs a buffer", "[rows]") {
     CHECK(done.error().where == folder / "rows");
     CHECK_FALSE(store.saveAll().ok());
 }
+
+TEST_CASE("a small pool serves very many cells without looking at all of them", "[rows]") {
+    // Every row begins a block: looking at each cell for each would take minutes.
+    constexpr std::size_t cells = std::size_t{1} << 18, rowBytes = 12;
+    TemporaryFolder folder;
+    auto file = scratchIn(folder);
+    RowPool pool(0, file.get());
+    RowStore store(pool, rowBytes, cells);
+    Bytes row(rowBytes);
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        storeLe<std::uint64_t>(row.data(), i);
+        appendOrFail(store, i * 12345 % cells, row, rowBytes);
+    }
+    std::size_t wrong = 0;
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+        storeLe<std::uint64_t>(row.data(), i);
+        wrong += drained(store, i * 12345 % cells, false, rowBytes) == row ? 0 : 1;
+    }
+    CHECK(wrong == 0);
+}
