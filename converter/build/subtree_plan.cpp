@@ -87,10 +87,8 @@ class Planner {
         int level =
             cube.bits - static_cast<int>(std::bit_width(difference)); // of the smallest node that holds them
         std::uint64_t points = store.count(cell);
-        if (difference == 0 || level >= deepest) {
-            add(store, grid, cell, 1, grid.level, points);
-            return {};
-        }
+        if (difference == 0 || level >= deepest)
+            return addWhole(store, grid, cell, points);
         CellGrid finer{cube, level + 1, cube.keyOf(bounds.min, level)};
         while (finer.level < deepest && finer.level - level < CellGrid::deepest &&
                points >> (2 * (finer.level - level)) > mostPoints_ / 4)
@@ -106,6 +104,18 @@ class Planner {
         RowStore& inner = *nested;
         plan_.nested.push_back(std::move(nested));
         return plan(inner, finer);
+    }
+
+    // A cell that can't be parted. In a store of its own, as it will be forgotten bit by bit: a run that is
+    // killed meanwhile plans again with the cells of the tiles, which therefore stay as they are until then.
+    Status addWhole(RowStore& store, const CellGrid& grid, std::size_t cell, std::uint64_t points) {
+        auto whole = std::make_unique<RowStore>(*tiles_.pool, tiles_.layout.rowBytes(), 1);
+        STIPPLE_CHECK(store.drain(cell, false, [&](const std::uint8_t* rows, std::size_t count) {
+            return whole->append(0, rows, count);
+        }));
+        add(*whole, {grid.cube, grid.level, grid.keyOf(cell)}, 0, 1, grid.level, points);
+        plan_.nested.push_back(std::move(whole));
+        return {};
     }
 
     Tiles& tiles_;

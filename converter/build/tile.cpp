@@ -94,7 +94,7 @@ class Tiling {
             STIPPLE_CHECK(readAll());
         }
         STIPPLE_CHECK(fitCube());
-        if (tiles_.pool->spilledBytes() > 0 && !tiles_.onDisk)
+        if (mustSave() && !tiles_.onDisk)
             STIPPLE_CHECK(save(true));
         return std::move(tiles_);
     }
@@ -106,6 +106,9 @@ class Tiling {
         tiles_.cells.reset();
         tiles_.pool.reset();
         tiles_.file.reset();
+        // A checkpoint of what was there before would describe a file that holds other points.
+        STIPPLE_CHECK(folder_.remove(recordName));
+        recorded_ = false;
         STIPPLE_TRY(file, folder_.scratch("points", false));
         tiles_.file = std::move(file);
         tiles_.sums = PointSums(scan_.inputs.size());
@@ -152,7 +155,7 @@ class Tiling {
             for (const Worker& worker : workers)
                 tiles_.sums.add(worker.sums);
             nextRead_ = end;
-            if (!measuring_ && !misfit_ && tiles_.pool->spilledBytes() > 0 && end < reads_.size())
+            if (!measuring_ && !misfit_ && mustSave() && end < reads_.size())
                 STIPPLE_CHECK(save(false));
         }
         return {};
@@ -264,12 +267,16 @@ class Tiling {
         std::swap(tiles_.cells, cells);
         tiles_.grid = grid;
         tiles_.onDisk = false;
-        if (tiles_.pool->spilledBytes() > 0)
+        if (mustSave())
             STIPPLE_CHECK(save(true));
         for (std::size_t cell = 0; cell < cells->cells(); ++cell)
             cells->forget(cell);
         return {};
     }
+
+    // Points that went to disk are worth a checkpoint; and an earlier one must not outlive the cells that it
+    // describes, even if all that came since fits memory.
+    bool mustSave() const { return recorded_ || tiles_.pool->spilledBytes() > 0; }
 
     Status save(bool complete) {
         STIPPLE_CHECK(tiles_.cells->saveAll());
@@ -286,6 +293,7 @@ class Tiling {
         tiles_.cells->describe(record);
         STIPPLE_CHECK(folder_.save(recordName, record.bytes()));
         tiles_.onDisk = complete;
+        recorded_ = true;
         return {};
     }
 
@@ -318,6 +326,7 @@ class Tiling {
         nextRead_ = static_cast<std::size_t>(reads);
         done_ = tiles_.sums.points;
         tiles_.onDisk = complete;
+        recorded_ = true;
         return true;
     }
 
@@ -329,6 +338,7 @@ class Tiling {
     Tiles tiles_;
     BoxI layoutBounds_;
     std::size_t nextRead_ = 0; // of reads_; all before it are in the cells
+    bool recorded_ = false;    // the folder has a checkpoint of these cells
     bool measuring_ = false;
     std::atomic<bool> misfit_{false}; // a point lay where rows can't hold it
     std::mutex progressMutex_;

@@ -94,6 +94,16 @@ Result<Bytes> WorkFolder::load(const std::string& name) const {
     return std::move(bytes);
 }
 
+Status WorkFolder::remove(const std::string& name) {
+    std::error_code failed;
+    fs::path record = fs::path(path_) / name;
+    fs::remove(record, failed);
+    if (failed)
+        return Error{ErrorCode::writeFailed, cat("can't be removed: ", failed.message()), record.string(),
+                     ""};
+    return {};
+}
+
 Result<std::unique_ptr<ScratchFile>> WorkFolder::scratch(const std::string& name, bool reopen) {
     std::string path = (fs::path(path_) / name).string();
     auto earlier = reopen ? ScratchFile::open(path)

@@ -34,6 +34,7 @@ class WorkFolder {
     // none, corrupt if it is damaged.
     Status save(const std::string& name, ByteSpan record);
     Result<Bytes> load(const std::string& name) const;
+    Status remove(const std::string& name); // also if there is none
 
     // A scratch file that stays as long as the folder does: the earlier run's where there is one and
     // `reopen`, else a new one.
