@@ -98,7 +98,8 @@ class Builder {
         STIPPLE_CHECK(runScheduled(nodes, before, outer, options_.memoryBytes, options_.stop, buildItem));
         for (std::size_t i = 0; i < work.size(); ++i) {
             take(built[i]);
-            if (work[i].key.level > 0)
+            // The sample may be empty: neighbours took all the room, or the node is too wide to hold points.
+            if (work[i].key.level > 0 && built[i].samplePoints > 0)
                 ready.push_back({work[i].key,
                                  built[i].samplePoints,
                                  {},
