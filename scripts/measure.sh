@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures one LAS file through the whole product and prints the figures of docs/MEASUREMENTS.md:
+# Measures one LAS or LAZ file through the whole product and prints the figures of docs/MEASUREMENTS.md:
 # conversion, proof, export, bits and decode speed (native and WebAssembly), requests to the first picture by the server's
 # log, both rasterizers and their difference. Needs what scripts/test.sh builds. Leaves its files in build/measure.
 #   scripts/measure.sh SCAN.las
@@ -8,7 +8,8 @@ scan=$(realpath "${1:?usage: scripts/measure.sh SCAN.las}")
 cd "$(dirname "$0")/.."
 . scripts/environment.sh
 stipple=$PWD/build/release/client/headless/stipple
-name=$(basename "$scan" .las)
+name=$(basename "$scan")
+name=${name%.la[sz]}
 work=build/measure
 mkdir -p "$work"
 cloud=$work/$name.stipple

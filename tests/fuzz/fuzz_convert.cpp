@@ -1,4 +1,5 @@
-// Any bytes as a LAS file: the conversion refuses them, or makes a cloud that holds exactly their points.
+// Any bytes as a scan, of the kind they begin like: the conversion refuses them, or makes a cloud that holds
+// exactly their points.
 #include "converter/build/verify.hpp"
 
 #include <cstdio>
