@@ -279,10 +279,14 @@ class Conversion {
     }
 
     Error describeEnd(Error error, const WorkFolder& folder) const {
+        auto advise = [&](const std::string& advice) {
+            error.advice += cat(error.advice.empty() ? "" : "; ", advice);
+        };
         if (kept_)
-            error.advice +=
-                cat(error.advice.empty() ? "" : "; ", "what was done so far is kept in ", folder.path(),
-                    ": the same command goes on from there, or remove that folder");
+            advise(cat("what was done so far is kept in ", folder.path(),
+                       ": the same command goes on from there, or remove that folder"));
+        else if (error.code == ErrorCode::cancelled)
+            advise("nothing is left behind");
         return error;
     }
 
