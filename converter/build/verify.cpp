@@ -110,7 +110,7 @@ class Verification {
             return {};
         }
         checkPositions(metadata, entry, batch, worker);
-        if (entry.childMask != 0 && metadata.spacing > 0)
+        if (entry.childMask != 0 && metadata.spacing > 0 && metadata.sampling == Sampling::poisson)
             checkSpacing(metadata, entry, batch, worker);
         worker.hash.add(metadata.schema, batch);
         merge(worker.statistics, statisticsOf(metadata.schema, batch));

@@ -222,7 +222,8 @@ Overlap CloudFilter::overlapOf(const NodeEntry& entry) const {
 bool CloudFilter::thins(const NodeEntry& entry) const {
     if (filter_.spacing == 0)
         return false;
-    return entry.childMask == 0 || std::ldexp(metadata_->spacing, -entry.key.level) < filter_.spacing;
+    bool keepsDistance = metadata_->sampling == Sampling::poisson && entry.childMask != 0;
+    return !keepsDistance || std::ldexp(metadata_->spacing, -entry.key.level) < filter_.spacing;
 }
 
 CloudFilter::Verdict CloudFilter::verdictOn(const NodeEntry& entry) const {

@@ -34,7 +34,8 @@ struct PointFilter {
     // root, halved with each level) is at least this, so no two points of an inner node are nearer. Leaves
     // among these levels hold the rest of their points at any distance, so they are thinned to it: in stored
     // order, a point nearer than this to one kept before, in the same node, is left out. The root's level is
-    // taken even where its own spacing is smaller, and thinned likewise.
+    // taken even where its own spacing is smaller, and thinned likewise; so are inner nodes of clouds that
+    // were sampled without a minimum distance.
     //
     // Distances are measured as the converter does: in plan where z has another unit than x and y.
     //

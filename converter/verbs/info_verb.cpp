@@ -91,8 +91,9 @@ void printAsText(const std::string& file, const CloudSummary& summary) {
     for (int axis = 0; axis < 3 && !bounds.empty(); ++axis)
         fmt::print("{}: {} to {}, scale {}, offset {}\n", "xyz"[axis], bounds.min[axis], bounds.max[axis],
                    metadata.grid.scale[axis], metadata.grid.offset[axis]);
-    fmt::print("root cube: 2^{} steps wide; spacing of the root {:.6g}; hash {}\n", metadata.rootCube.bits,
-               metadata.spacing, metadata.pointHash);
+    fmt::print("root cube: 2^{} steps wide; spacing of the root {:.6g}, sampled {}; hash {}\n",
+               metadata.rootCube.bits, metadata.spacing,
+               samplingNames[static_cast<std::size_t>(metadata.sampling)], metadata.pointHash);
     fmt::print("made by {} ({})\n", metadata.tool, metadata.options);
     for (const SourceFile& source : metadata.sources)
         fmt::print("source: {} ({}, {} points)\n", source.name, source.format, source.pointCount);

@@ -81,6 +81,7 @@ Json metadataJson(const CloudMetadata& metadata) {
     json["rootCube"] = {{"min", Json::array({corner.x, corner.y, corner.z})},
                         {"bits", metadata.rootCube.bits}};
     json["spacing"] = metadata.spacing;
+    json["sampling"] = samplingNames[static_cast<std::size_t>(metadata.sampling)];
     json["pictureColour"] = colourName(metadata.pictureColour);
     json["colourIs8Bit"] = metadata.colourIs8Bit;
     json["attributes"] = Json::array();

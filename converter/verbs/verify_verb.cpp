@@ -75,9 +75,9 @@ void printText(const std::string& file, const VerifyReport& report) {
         fmt::print("fault: {}\n", fault);
     if (report.faultCount > report.faults.size())
         fmt::print("and {} more faults\n", report.faultCount - report.faults.size());
-    fmt::print(
-        "{}: {} points in {} nodes, {} bytes; of {} points in inner nodes {} break the minimum distance\n",
-        file, report.points, report.nodes, report.fileBytes, report.spacedPoints, report.tooNear);
+    fmt::print("{}: {} points in {} nodes, {} bytes; of {} points in inner nodes with a minimum distance {} "
+               "break it\n",
+               file, report.points, report.nodes, report.fileBytes, report.spacedPoints, report.tooNear);
     if (report.comparison)
         printComparison(report);
     fmt::print("{}\n", report.passed() ? "passed" : "FAILED");

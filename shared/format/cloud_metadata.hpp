@@ -6,6 +6,7 @@
 #include "shared/geometry/node_key.hpp"
 #include "shared/points/attribute.hpp"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -50,6 +51,11 @@ struct AttributeStatistics {
 // The colour that travels with positions in a node's strata.
 enum class PictureColour : std::uint8_t { none, rgb, intensity };
 
+// How the points of inner nodes were chosen among those below (converter/build/chooser.hpp). Only `poisson`
+// keeps a minimum distance between the points of a node.
+enum class Sampling : std::uint8_t { poisson, random, grid };
+inline constexpr std::array<const char*, 3> samplingNames{"poisson", "random", "grid"};
+
 struct SourceFile {
     std::string name;   // file name without folders
     std::string format; // "LAS 1.2, point format 2"
@@ -63,8 +69,11 @@ struct CloudMetadata {
     Crs crs;
     Grid grid;
     RootCube rootCube;
-    double spacing = 0; // minimum distance of points in the root node, world units; halves with each level
-    BoxI bounds;        // of all points, grid integers; empty for an empty cloud
+    // Of points in the root node, world units; halves with each level: their minimum distance (poisson), the
+    // width of the cells that are given a point (grid), or were there a point for each (random).
+    double spacing = 0;
+    Sampling sampling = Sampling::poisson;
+    BoxI bounds; // of all points, grid integers; empty for an empty cloud
     std::uint64_t pointCount = 0;
     Schema schema;
     std::vector<AttributeStatistics> statistics; // parallel to schema.attributes

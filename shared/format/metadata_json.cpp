@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
 namespace stipple {
 
@@ -90,6 +91,17 @@ class Fields {
         if (value < low || value > high)
             refuse(pathOf(name), cat("a number from ", low, " to ", high));
         return value;
+    }
+    // The index among `names`; 0 for something else.
+    std::size_t choice(const char* name, std::span<const char* const> names) {
+        std::string value = text(name), expected;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            if (value == names[i])
+                return i;
+            expected += cat(i == 0 ? "" : i + 1 < names.size() ? ", " : " or ", names[i]);
+        }
+        refuse(pathOf(name), expected);
+        return 0;
     }
     Vec3d numbers(const char* name) {
         Vec3d v;
@@ -273,6 +285,8 @@ Bytes writeMetadata(const CloudMetadata& metadata) {
     json["grid"] = {{"scale", vecJson(metadata.grid.scale)}, {"offset", vecJson(metadata.grid.offset)}};
     json["rootCube"] = {{"min", vecJson(metadata.rootCube.min)}, {"bits", metadata.rootCube.bits}};
     json["spacing"] = numberJson(metadata.spacing);
+    if (metadata.sampling != Sampling::poisson)
+        json["sampling"] = samplingNames[static_cast<std::size_t>(metadata.sampling)];
     if (!metadata.bounds.empty())
         json["bounds"] = {{"min", vecJson(metadata.bounds.min)}, {"max", vecJson(metadata.bounds.max)}};
     json["pictureColour"] = colourNames[static_cast<std::size_t>(metadata.pictureColour)];
@@ -311,19 +325,14 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
     Fields cube(part(fields, "rootCube"), "rootCube", error);
     metadata.rootCube = {cube.integers("min"), static_cast<int>(cube.integer("bits", 0, maxRootBits))};
     metadata.spacing = fields.number("spacing");
+    if (fields.find("sampling") != nullptr)
+        metadata.sampling = static_cast<Sampling>(fields.choice("sampling", samplingNames));
     if (fields.find("bounds") != nullptr) {
         Fields bounds(part(fields, "bounds"), "bounds", error);
         metadata.bounds.min = bounds.integers("min");
         metadata.bounds.max = bounds.integers("max");
     }
-    std::string colour = fields.text("pictureColour");
-    std::size_t colourIndex = 0;
-    while (colourIndex < colourNames.size() && colour != colourNames[colourIndex])
-        ++colourIndex;
-    if (colourIndex == colourNames.size())
-        fields.refuse("pictureColour", "none, rgb or intensity");
-    else
-        metadata.pictureColour = static_cast<PictureColour>(colourIndex);
+    metadata.pictureColour = static_cast<PictureColour>(fields.choice("pictureColour", colourNames));
     metadata.colourIs8Bit = fields.flag("colourIs8Bit");
     const Json& attributes = fields.list("attributes");
     if (attributes.size() > maxAttributes)

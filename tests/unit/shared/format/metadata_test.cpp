@@ -51,6 +51,7 @@ TEST_CASE("metadata come back, every double to its last bit") {
     CHECK(read.grid == metadata.grid);
     CHECK(read.rootCube == metadata.rootCube);
     CHECK(read.spacing == metadata.spacing);
+    CHECK(read.sampling == Sampling::poisson);
     CHECK(read.bounds == metadata.bounds);
     CHECK(read.pointCount == metadata.pointCount);
     CHECK(read.schema == metadata.schema);
@@ -70,6 +71,20 @@ TEST_CASE("vertical system and axes may be absent") {
     CHECK(textOf(block).find("axes") == std::string::npos);
     CHECK(textOf(block).find("vertical") == std::string::npos);
     CHECK(need(parseMetadata(block)).crs == metadata.crs);
+}
+
+TEST_CASE("the sampling is poisson unless another is named") {
+    CloudMetadata metadata = fullMetadata();
+    CHECK(textOf(writeMetadata(metadata)).find("sampling") == std::string::npos);
+    for (Sampling sampling : {Sampling::random, Sampling::grid}) {
+        metadata.sampling = sampling;
+        CHECK(need(parseMetadata(writeMetadata(metadata))).sampling == sampling);
+    }
+    std::string text = textOf(writeMetadata(metadata));
+    text.replace(text.find("\"grid\"", text.find("sampling")), 6, "\"gird\"");
+    auto read = parseMetadata(framed(text));
+    REQUIRE_FALSE(read.ok());
+    CHECK(read.error().what == "\"sampling\" is not poisson, random or grid");
 }
 
 TEST_CASE("statistics that are no finite number come back") {
