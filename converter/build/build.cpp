@@ -182,7 +182,7 @@ class Builder {
             subtree.splitByCount(leafCapacity);
         else
             subtree.splitTo(item.leaves);
-        STIPPLE_TRY(sampled, sample(subtree, spacing_, borders, threads, options_.stop));
+        STIPPLE_TRY(sampled, sample(metadata_.sampling, subtree, spacing_, borders, threads, options_.stop));
         built.tier = tier;
         built.key = item.key;
         built.borders = std::move(sampled.borders);
@@ -333,7 +333,7 @@ class Builder {
         STIPPLE_CHECK(parallelFor(chosen, options_.threads, options_.stop, examine));
         for (const SpacingEstimate& part : parts)
             estimate.add(part);
-        spacing_ = estimate.choose();
+        spacing_ = estimate.choose(metadata_.sampling);
         return journal_.setDensity(spacing_.density);
     }
 

@@ -55,8 +55,8 @@ PictureColour pictureColour(const ColourExtremes& colour, const Schema& schema) 
 }
 
 std::string optionsText(const ConvertOptions& options, const Spacing& spacing) {
-    std::string text =
-        cat("sampling=poisson spacing=side/2^(", spacing.density, "/2) leaf-capacity=", leafCapacity);
+    std::string text = cat("sampling=", samplingNames[static_cast<std::size_t>(options.sampling)],
+                           " spacing=side/2^(", spacing.density, "/2) leaf-capacity=", leafCapacity);
     return options.crs.empty() ? text : cat(text, " crs=", options.crs);
 }
 
@@ -85,6 +85,7 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& 
         metadata.pictureColour == PictureColour::rgb &&
         std::all_of(tiles.sums.colour.rgbMax.begin(), tiles.sums.colour.rgbMax.end(), fits8Bit);
     metadata.pointHash = tiles.sums.hash.hex();
+    metadata.sampling = options.sampling;
     for (const ScannedInput& input : scan.inputs)
         appendSources(metadata.sources, input.description());
     std::sort(metadata.sources.begin(), metadata.sources.end(), [](const SourceFile& a, const SourceFile& b) {
@@ -97,9 +98,10 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& 
 
 // What decides the bytes of the output: a checkpoint goes on only if all of it is the same.
 std::string identityOf(const Scan& scan, const std::string& output, const ConvertOptions& options) {
-    std::string text = cat("stipple " STIPPLE_VERSION "\noutput ", fs::absolute(output).string(), "\nname ",
-                           options.name, "\ncrs ", options.crs, "\ncolumns ", options.input.columns,
-                           "\nscale ", options.input.scale, "\n");
+    std::string text =
+        cat("stipple " STIPPLE_VERSION "\noutput ", fs::absolute(output).string(), "\nname ", options.name,
+            "\ncrs ", options.crs, "\ncolumns ", options.input.columns, "\nscale ", options.input.scale,
+            "\nsampling ", static_cast<int>(options.sampling), "\n");
     std::vector<std::string> inputs;
     for (const ScannedInput& input : scan.inputs) {
         const std::string& path = input.description().path;

@@ -35,7 +35,8 @@ struct ConvertOptions {
     std::string name = {}; // of the cloud; empty: the output's file name without its extension
     std::string crs = {};  // of the cloud, "EPSG:n" (ScanOptions::crs); empty: what the inputs state
     InputOptions input = {};
-    int threads = 0; // 0: one for each core
+    Sampling sampling = Sampling::poisson; // how points of coarse nodes are chosen
+    int threads = 0;                       // 0: one for each core
     // For points, at least leastMemoryBytes; the process has up to 200 MB besides. 0: a quarter of the
     // machine's.
     std::uint64_t memoryBytes = 0;

@@ -9,9 +9,11 @@ namespace stipple {
 namespace {
 constexpr int densest = Spacing::densest, thinnest = 2;
 constexpr double maxScaleRatio = 100;
-// Of the cells, one minimum distance wide, that points lie in, so many get a point: about 0.42 on surfaces
-// (measured on airborne and indoor scans), 0.7 and more where points fill a volume.
-constexpr double pointsPerCell = 0.6;
+// Of the cells, one minimum distance wide, that points lie in, so many get a point. Poisson: about 0.42 on
+// surfaces (measured on airborne and indoor scans), 0.7 and more where points fill a volume.
+double pointsPerCell(Sampling sampling) {
+    return sampling == Sampling::poisson ? 0.6 : 1;
+}
 // How many points a node may take, before its parent takes a quarter of them, where the points are.
 constexpr double targetSample = 75000;
 
@@ -49,7 +51,7 @@ void addCellsOfInnerNodes(const Subtree& subtree, std::vector<CellCounts>& resul
 }
 
 // The size of the node that a point is in, on average: large nodes count for what they hold.
-double typicalSample(const std::vector<CellCounts>& nodes, int density) {
+double typicalSample(const std::vector<CellCounts>& nodes, int density, double pointsPerCell) {
     auto finer = static_cast<std::size_t>((density + 1) / 2), coarser = static_cast<std::size_t>(density / 2);
     double sum = 0, squares = 0;
     for (const CellCounts& cells : nodes) {
@@ -91,10 +93,11 @@ void SpacingEstimate::add(const SpacingEstimate& other) {
     nodes_.insert(nodes_.end(), other.nodes_.begin(), other.nodes_.end());
 }
 
-Spacing SpacingEstimate::choose() const {
+Spacing SpacingEstimate::choose(Sampling sampling) const {
     Spacing spacing;
     spacing.metric = metric_;
-    while (spacing.density > thinnest && typicalSample(nodes_, spacing.density) > targetSample)
+    while (spacing.density > thinnest &&
+           typicalSample(nodes_, spacing.density, pointsPerCell(sampling)) > targetSample)
         --spacing.density;
     return spacing;
 }

@@ -19,8 +19,8 @@ struct DistanceMetric {
 };
 DistanceMetric distanceMetric(const Grid& grid, const Crs& crs);
 
-// The minimum distance in a node of level `level` is `unit` × sqrt(2^(2 × nodeBits - density)): a node is
-// 2^(density / 2) minimum distances wide.
+// The distance at which points of a node of level `level` are chosen (how: chooser.hpp) is `unit` × sqrt(2^(2
+// × nodeBits - density)): a node is 2^(density / 2) such distances wide.
 struct Spacing {
     static constexpr int densest = 16;
     DistanceMetric metric;
@@ -38,7 +38,7 @@ class SpacingEstimate {
     explicit SpacingEstimate(const DistanceMetric& metric);
     void add(const Subtree& subtree);
     void add(const SpacingEstimate& other);
-    Spacing choose() const;
+    Spacing choose(Sampling sampling) const;
 
     // The octree cells d levels below a node that hold points, for d = 0, 1, …
     using CellCounts = std::array<double, Spacing::densest / 2 + 1>;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <map>
 #include <memory>
 #include <sys/resource.h>
 
@@ -177,6 +178,14 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
         "--append", arguments->options.append,
         "Add the inputs to this .stipple file (replaced when all is done, unless -o names another)");
     cli::addReadingOptions(*verb, arguments->options.input);
+    std::map<std::string, Sampling> samplings;
+    for (std::size_t i = 0; i < samplingNames.size(); ++i)
+        samplings.emplace(samplingNames[i], static_cast<Sampling>(i));
+    verb->add_option("--sampling", arguments->options.sampling,
+                     "How the points of coarse nodes are chosen: poisson (with a minimum distance; default), "
+                     "grid (one for each cell) or random")
+        ->transform(CLI::CheckedTransformer(samplings))
+        ->option_text("poisson|grid|random");
     verb->add_flag("--strict", arguments->options.strict,
                    "Refuse inputs with points that can't be kept (no number, out of range, marked invalid)");
     verb->add_option("--progress", arguments->progress,

@@ -14,10 +14,14 @@ struct LevelsFixture {
     TemporaryFolder folder;
     std::string cloud = folder / "c.stipple";
 
-    LevelsFixture() {
+    LevelsFixture() : LevelsFixture(Sampling::poisson) {}
+    explicit LevelsFixture(Sampling sampling) {
         writeScan(surfaceScan(6, 80000, 1), folder / "in.las");
-        convertOrFail({folder / "in.las"}, cloud);
+        ConvertOptions options;
+        options.sampling = sampling;
+        convertOrFail({folder / "in.las"}, cloud, options);
     }
+    void checkSpacings() const;
 };
 
 double squaredDistance(const AllPoints& all, std::size_t a, std::size_t b) {
@@ -26,10 +30,7 @@ double squaredDistance(const AllPoints& all, std::size_t a, std::size_t b) {
     return dot(apart, apart);
 }
 
-} // namespace
-
-TEST_CASE_METHOD(LevelsFixture,
-                 "a spacing gives the levels that keep it, leaves thinned, and reads no finer node") {
+void LevelsFixture::checkSpacings() const {
     AllPoints all = allPoints(cloud);
     double root = all.metadata.spacing;
     REQUIRE(root > 0);
@@ -50,7 +51,7 @@ TEST_CASE_METHOD(LevelsFixture,
             if (own < spacing && node.key.level > 0)
                 continue;
             bool free = true;
-            bool thins = node.childMask == 0 || own < spacing;
+            bool thins = node.childMask == 0 || own < spacing || all.metadata.sampling != Sampling::poisson;
             for (std::size_t k = first; k < i && thins && free; ++k)
                 free = !wanted[k] || squaredDistance(all, i, k) >= spacing * spacing;
             wanted[i] = free;
@@ -70,6 +71,18 @@ TEST_CASE_METHOD(LevelsFixture,
                          return wanted[i] && options.filter.box->contains(all.world(i));
                      }));
     }
+}
+
+} // namespace
+
+TEST_CASE_METHOD(LevelsFixture,
+                 "a spacing gives the levels that keep it, leaves thinned, and reads no finer node") {
+    checkSpacings();
+}
+
+TEST_CASE("inner nodes are thinned, too, where they were sampled without a minimum distance") {
+    for (Sampling sampling : {Sampling::grid, Sampling::random})
+        LevelsFixture(sampling).checkSpacings();
 }
 
 TEST_CASE_METHOD(LevelsFixture, "classes choose points, and a class that is nowhere reads no node") {
