@@ -158,7 +158,7 @@ Status PointwiseDecoder::decode(std::span<std::uint8_t> records) {
         decoder = codec.code(decoder, record);
         if (decoder.position() > end) [[unlikely]]
             return Error{ErrorCode::truncated, "the chunk of compressed points ends before its last point",
-                         "", ""};
+                         "", "the points of this chunk are lost; get the file again"};
     }
     state_->decoder = decoder;
     return {};
