@@ -60,6 +60,8 @@ constexpr std::string_view readKinds = "give LAS, LAZ, E57, PLY, PCD, PTX, PTS, 
 
 Result<std::string> startOf(const std::string& path) {
     STIPPLE_TRY(source, openFileSource(path));
+    if (source->sizeBytes() == 0)
+        return std::string();
     STIPPLE_TRY(bytes, readNow(*source, {0, startBytes}));
     return std::string(bytes.begin(), bytes.end());
 }

@@ -124,6 +124,8 @@ Status printAny(const InfoArguments& arguments, SourceOpener openAddress) {
     if (std::filesystem::is_directory(arguments.file, ignored))
         return printInputInfo(arguments.file, arguments.json); // says that it is one
     STIPPLE_TRY(source, openFileSource(arguments.file));
+    if (source->sizeBytes() == 0)
+        return printInputInfo(arguments.file, arguments.json); // says that it is empty
     STIPPLE_TRY(head, readNow(*source, {0, 5}));
     std::string_view start(reinterpret_cast<const char*>(head.data()), head.size());
     if (start.starts_with("LASF"))

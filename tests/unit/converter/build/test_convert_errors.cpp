@@ -38,7 +38,8 @@ TEST_CASE("inputs that can't be read are refused by name, and nothing is left be
     writeText(folder / "photo.las", "\xFF\xD8\xFF\xE0");
     checkRefused(folder, {folder / "photo.las"}, output, ErrorCode::unsupported, "photo.las", "JPEG");
     writeText(folder / "empty.las", "");
-    checkRefused(folder, {folder / "empty.las"}, output, ErrorCode::truncated, "empty.las", "empty");
+    checkRefused(folder, {folder / "empty.las"}, output, ErrorCode::truncated, "empty.las",
+                 "the file is empty");
     checkRefused(folder, {}, output, ErrorCode::invalidArgument, "", "no input");
 }
 
