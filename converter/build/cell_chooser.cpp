@@ -14,7 +14,7 @@ constexpr double maxCells = 0x1p30;
 static_assert(maxNodeBits <= 31);
 } // namespace
 
-CellGrid::CellGrid(const Spacing& spacing, int nodeBits) : nodeBits_(nodeBits) {
+SampleGrid::SampleGrid(const Spacing& spacing, int nodeBits) : nodeBits_(nodeBits) {
     const Vec3d& weights = spacing.metric.weights;
     double perSide = std::ldexp(1.0, nodeBits) / std::sqrt(spacing.squaredSteps(nodeBits));
     double largest = 0;
@@ -26,16 +26,16 @@ CellGrid::CellGrid(const Spacing& spacing, int nodeBits) : nodeBits_(nodeBits) {
     unit_ = {unit_.x / largest, unit_.y / largest, unit_.z / largest};
 }
 
-Vec3i CellGrid::cellOf(Vec3<std::uint32_t> p) const {
+Vec3i SampleGrid::cellOf(Vec3<std::uint32_t> p) const {
     return {(p.x * count_.x) >> nodeBits_, (p.y * count_.y) >> nodeBits_, (p.z * count_.z) >> nodeBits_};
 }
 
-std::uint64_t CellGrid::indexOf(Vec3i cell) const {
+std::uint64_t SampleGrid::indexOf(Vec3i cell) const {
     auto number = [](std::int64_t n) { return static_cast<std::uint64_t>(n); };
     return (number(cell.z) * number(count_.y) + number(cell.y)) * number(count_.x) + number(cell.x);
 }
 
-double CellGrid::squaredToCentre(Vec3<std::uint32_t> p, Vec3i cell) const {
+double SampleGrid::squaredToCentre(Vec3<std::uint32_t> p, Vec3i cell) const {
     double sum = 0;
     for (int axis = 0; axis < 3; ++axis) {
         // The centre is at (cell + 1/2) × side / count: 2 × count times that is an integer.
@@ -67,7 +67,7 @@ CellChooser::CellChooser(const Subtree& subtree, const Spacing& spacing, int wor
     : subtree_(subtree), spacing_(spacing), tables_(static_cast<std::size_t>(workers)) {}
 
 const std::vector<CellTable::Entry>& CellChooser::nearestToCentres(const Candidates& candidates, int worker) {
-    CellGrid grid(spacing_, subtree_.cube().nodeBits(key(candidates).level));
+    SampleGrid grid(spacing_, subtree_.cube().nodeBits(key(candidates).level));
     CellTable& table = tables_[static_cast<std::size_t>(worker)];
     table.begin(candidates.ranks.size());
     for (std::uint32_t i = 0; i < candidates.ranks.size(); ++i) {

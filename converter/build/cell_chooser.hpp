@@ -8,9 +8,9 @@ namespace stipple {
 
 // The cells of a node of 2^nodeBits steps: per axis as many, and at least one, as give cells nearest to the
 // minimum distance in width; one along an axis without weight.
-class CellGrid {
+class SampleGrid {
   public:
-    CellGrid(const Spacing& spacing, int nodeBits);
+    SampleGrid(const Spacing& spacing, int nodeBits);
 
     Vec3i count() const { return count_; } // of cells per axis
     // Exact. `p` in steps from the node's corner.

@@ -119,12 +119,12 @@ TEST_CASE("grid takes the point nearest to each cell's centre, the first of equa
 }
 
 TEST_CASE("cells follow the scales of the axes", "[sample]") {
-    CHECK(CellGrid(spacingOf(16), 20).count() == Vec3i{256, 256, 256});
-    CHECK(CellGrid(spacingOf(15), 20).count() == Vec3i{181, 181, 181});
-    CHECK(CellGrid(spacingOf(16, {1, 0.5, 0.1}), 20).count() == Vec3i{256, 128, 26});
-    CHECK(CellGrid(spacingOf(16, {1, 1, 0}), 31).count() == Vec3i{256, 256, 1});
-    CHECK(CellGrid(spacingOf(16, {1, 1e-9, 100}), 31).count() == Vec3i{256, 1, 25600});
-    CellGrid widest(spacingOf(16, {1, 1, 100}), 31);
+    CHECK(SampleGrid(spacingOf(16), 20).count() == Vec3i{256, 256, 256});
+    CHECK(SampleGrid(spacingOf(15), 20).count() == Vec3i{181, 181, 181});
+    CHECK(SampleGrid(spacingOf(16, {1, 0.5, 0.1}), 20).count() == Vec3i{256, 128, 26});
+    CHECK(SampleGrid(spacingOf(16, {1, 1, 0}), 31).count() == Vec3i{256, 256, 1});
+    CHECK(SampleGrid(spacingOf(16, {1, 1e-9, 100}), 31).count() == Vec3i{256, 1, 25600});
+    SampleGrid widest(spacingOf(16, {1, 1, 100}), 31);
     const std::uint32_t last = (std::uint32_t{1} << 31) - 1;
     CHECK(widest.cellOf({last, 0, last}) == Vec3i{255, 0, 25599});
     CHECK(widest.indexOf({255, 255, 25599}) == 256ull * 256 * 25600 - 1);
@@ -236,7 +236,7 @@ TEST_CASE("no two points of an inner node share a cell of its grid", "[sample]")
                         return {};
                     ++innerNodes;
                     STIPPLE_TRY(batch, (*reader)->readNode(entry));
-                    CellGrid grid(spacing, metadata.rootCube.nodeBits(entry.key.level));
+                    SampleGrid grid(spacing, metadata.rootCube.nodeBits(entry.key.level));
                     std::set<std::uint64_t> taken;
                     for (Vec3i p : batch.positions) {
                         Vec3i in = p - metadata.rootCube.nodeMin(entry.key);
