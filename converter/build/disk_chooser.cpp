@@ -59,10 +59,10 @@ void DiskChooser::blockNeighbours(const NodeKey& node, DiskSampler& sampler) con
             continue;
         if (auto found = indexOf_.find(key); found != indexOf_.end())
             block(borders_[found->second], corner, bits, sampler);
-        else
-            for (const Borders* borders : neighbours_)
-                if (auto outside = borders->find(key); outside != borders->end())
-                    block(outside->second, corner, bits, sampler);
+        // Leaves of this subtree, too, may be roots of others that were sampled before.
+        for (const Borders* borders : neighbours_)
+            if (auto outside = borders->find(key); outside != borders->end())
+                block(outside->second, corner, bits, sampler);
     }
 }
 

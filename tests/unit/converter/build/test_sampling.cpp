@@ -14,6 +14,21 @@ TEST_CASE("inner nodes keep the minimum distance, across the borders of nodes to
     checkMinimumDistance(folder / "c.stipple");
 }
 
+// Of the root's children the dense one is sampled when all of its own are, after the one beside it.
+TEST_CASE("the minimum distance holds where subtrees of different levels meet", "[sample]") {
+    TemporaryFolder folder;
+    TestScan scan = surfaceScan(0, 700000, 14);
+    for (std::size_t i = 0; i < scan.points.positions.size(); ++i) {
+        Vec3i& p = scan.points.positions[i];
+        p = {i % 5 == 0 ? 32768 + p.x % 20000 : p.x % 32768, p.y % 32768, p.z % 20};
+    }
+    writeScan(scan, folder / "in.las");
+    ConvertOptions options;
+    options.sizes.subtreeBytes = 1 << 25;
+    convertOrFail({folder / "in.las"}, folder / "c.stipple", options);
+    checkMinimumDistance(folder / "c.stipple");
+}
+
 TEST_CASE("the minimum distance holds where the scales of the axes differ", "[sample]") {
     TemporaryFolder folder;
     TestScan scan = surfaceScan(0, 300000, 12);
