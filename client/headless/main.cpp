@@ -2,12 +2,15 @@
 #include "client/headless/verbs.hpp"
 #include "shared/cli/verb.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
 using namespace stipple;
 
 int main(int argc, char** argv) {
+    std::signal(SIGXFSZ, SIG_IGN); // beyond a limit on file sizes a write fails, as on a full disk
+
     CLI::App program{"Stipple turns point scans into one streamable file, serves it, and draws it."};
     program.set_version_flag("--version", "stipple " STIPPLE_VERSION);
     program.require_subcommand(1);

@@ -3,7 +3,10 @@
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
+#include <unistd.h>
 
 namespace stipple {
 
@@ -35,6 +38,11 @@ Status checkOutput(const std::vector<std::string>& inputs, const std::string& ou
     if (!folder.empty() && !fs::is_directory(folder, none))
         return Error{ErrorCode::writeFailed, "the folder of the output does not exist", output,
                      "make it first"};
+    // Now, not when everything else is done.
+    if (::access(folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+        return Error{ErrorCode::writeFailed,
+                     cat("the folder of the output can't be written: ", std::strerror(errno)), output,
+                     "choose another with -o"};
     return {};
 }
 

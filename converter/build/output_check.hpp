@@ -10,7 +10,8 @@
 namespace stipple {
 
 // Refuses an output that is one of the inputs (invalidArgument, never forced), a folder, in a folder that
-// does not exist, or, unless `force`, an existing file that does not begin with `magic` (writeFailed).
+// does not exist or can't be written, or, unless `force`, an existing file that does not begin with `magic`
+// (writeFailed).
 Status checkOutput(const std::vector<std::string>& inputs, const std::string& output, bool force,
                    std::string_view magic);
 

@@ -76,7 +76,9 @@ Status OutputFile::commit() {
 Error OutputFile::failure(const char* what) const {
     int code = errno;
     return {ErrorCode::writeFailed, cat(what, ": ", std::strerror(code)), path_,
-            code == ENOSPC || code == EDQUOT ? "free space on that disk, or write elsewhere" : ""};
+            code == ENOSPC || code == EDQUOT ? "free space on that disk, or write elsewhere"
+            : code == EFBIG                  ? "raise the limit on the size of files (ulimit -f)"
+                                             : ""};
 }
 
 } // namespace stipple

@@ -77,7 +77,9 @@ void ScratchFile::discard(std::uint64_t offset, std::uint64_t size) {
 Error ScratchFile::failure(const char* what) const {
     int code = errno;
     return {ErrorCode::writeFailed, cat(what, ": ", std::strerror(code)), path_,
-            code == ENOSPC || code == EDQUOT ? "free space on that disk, or choose another folder" : ""};
+            code == ENOSPC || code == EDQUOT ? "free space on that disk, or choose another folder"
+            : code == EFBIG                  ? "raise the limit on the size of files (ulimit -f)"
+                                             : ""};
 }
 
 } // namespace stipple
