@@ -102,6 +102,11 @@ class Tiling {
   private:
     // Starts over, for points in `bounds`.
     Status begin(const BoxI& bounds) {
+        if (std::size_t most = scan_.schema.bytesPerPoint() + sizeof(Vec3i); most > RowPool::blockBytes)
+            return Error{ErrorCode::limitExceeded,
+                         cat("a point with its position and attributes takes ", most, " bytes, but at most ",
+                             RowPool::blockBytes, " can be converted"),
+                         "", "leave attributes out, or convert the inputs apart from each other"};
         STIPPLE_TRY(cube, rootCubeOf(bounds));
         tiles_.cells.reset();
         tiles_.pool.reset();
