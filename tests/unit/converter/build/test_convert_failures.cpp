@@ -1,0 +1,294 @@
+// Conversions that fail, as a user sees them: what is said, the exit code, and what is left behind.
+#include "converter/build/verify.hpp"
+#include "shared/cli/verb.hpp"
+#include "tests/unit/converter/build/test_scan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <sys/wait.h>
+
+using namespace stipple;
+using namespace stipple::test;
+namespace fs = std::filesystem;
+
+namespace {
+struct Ended {
+    int code = -1;
+    std::string said; // on both outputs
+    bool says(const std::string& text) const { return said.find(text) != std::string::npos; }
+};
+
+// Runs a line of shell, in which $stipple is the program.
+Ended shell(const std::string& line) {
+    Ended ended;
+    std::FILE* pipe = ::popen(("stipple='" STIPPLE_PROGRAM "'; exec 2>&1; " + line).c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::array<char, 4096> part{};
+    while (std::size_t size = std::fread(part.data(), 1, part.size(), pipe))
+        ended.said.append(part.data(), size);
+    int status = ::pclose(pipe);
+    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    return ended;
+}
+
+// A line that runs where only it sees what it mounts, if that is allowed here.
+std::string withMounts(const std::string& line) {
+    return "unshare -m sh -c '" + line + "'";
+}
+bool mayMount(const TemporaryFolder& folder) {
+    fs::create_directory(folder / "probe");
+    if (shell(withMounts("mount -t tmpfs none " + (folder / "probe"))).code == 0)
+        return true;
+    WARN("skipped: this process may not mount file systems");
+    return false;
+}
+
+// Some 10 MB; its cloud is about 3 MB.
+void writeLarge(const std::string& path) {
+    writeScan(surfaceScan(1, 400000, 1), path);
+}
+
+// Changes bytes of a file in place.
+void patch(const std::string& path, std::size_t at, const Bytes& bytes) {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(at));
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    REQUIRE(file.good());
+}
+
+std::string convertLine(const std::string& input, const std::string& output) {
+    return "\"$stipple\" convert " + input + " -o " + output + " --progress none";
+}
+
+ConvertOptions pieces(std::uint64_t memoryBytes) {
+    ConvertOptions options;
+    options.memoryBytes = memoryBytes;
+    options.threads = 2;
+    options.sizes = {.pointsPerRound = 20000, .subtreeBytes = std::uint64_t{1} << 20};
+    return options;
+}
+
+// Six files of 20,000 points: more than the least pool of buffers holds.
+std::vector<std::string> writeSix(const TemporaryFolder& folder) {
+    std::vector<std::string> inputs;
+    for (std::size_t i = 0; i < 6; ++i) {
+        inputs.push_back(folder / ("in" + std::to_string(i) + ".las"));
+        writeScan(surfaceScan(1, 20000, i), inputs.back());
+    }
+    return inputs;
+}
+} // namespace
+
+TEST_CASE("a full disk is one sentence, exit code 4, and leaves nothing", "[failures]") {
+    TemporaryFolder folder;
+    if (!mayMount(folder))
+        return;
+    writeLarge(folder / "in.las");
+    fs::create_directory(folder / "small");
+    const std::string small = folder / "small";
+    auto convertThere = [&](const std::string& output, const std::string& options) {
+        return shell("export stipple; " +
+                     withMounts("mount -t tmpfs -o size=2m none " + small + " && " +
+                                convertLine(folder / "in.las", output) + options +
+                                "; code=$?; echo left: $(ls -A " + small + ")!; exit $code"));
+    };
+    for (const auto& [output, options] :
+         {std::pair<std::string, std::string>{small + "/out.stipple", ""},
+          std::pair<std::string, std::string>{folder / "out.stipple", " --temp " + small},
+          // The points find room on another disk, the cloud does not.
+          std::pair<std::string, std::string>{small + "/out.stipple", " --temp " + (folder / "temp")}}) {
+        Ended ended = convertThere(output, options);
+        INFO(ended.said);
+        CHECK(ended.code == cli::outputError);
+        CHECK(ended.says("No space left on device (free space on that disk, or "));
+        CHECK(ended.says("left: !"));
+        CHECK_FALSE(fs::exists(folder / "out.stipple"));
+    }
+    CHECK((!fs::exists(folder / "temp") || fs::is_empty(folder / "temp")));
+}
+
+TEST_CASE("a limit on the size of files is said like a full disk", "[failures]") {
+    TemporaryFolder folder;
+    writeLarge(folder / "in.las");
+    Ended ended =
+        shell("ulimit -f 1000; " + convertLine(folder / "in.las", folder / "out.stipple")); // × 512 or 1024
+    INFO(ended.said);
+    CHECK(ended.code == cli::outputError);
+    CHECK(ended.says("File too large (raise the limit on the size of files (ulimit -f))"));
+    CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a target that can't be written is refused before anything is read", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(0, 1000, 1), folder / "in.las");
+    std::ofstream(folder / "file") << "no folder";
+    Ended inFile = shell(convertLine(folder / "in.las", folder / "file/out.stipple"));
+    INFO(inFile.said);
+    CHECK(inFile.code == cli::outputError);
+    CHECK(inFile.says("the folder of the output does not exist"));
+    Ended temp =
+        shell(convertLine(folder / "in.las", folder / "out.stipple") + " --temp " + (folder / "file"));
+    INFO(temp.said);
+    CHECK(temp.code == cli::outputError);
+    CHECK(temp.says("the folder for temporary files can't be made"));
+    CHECK(folder.files() == 2);
+
+    if (!mayMount(folder))
+        return;
+    fs::create_directory(folder / "fixed");
+    Ended fixed = shell("export stipple; " +
+                        withMounts("cd " + (folder / "fixed") + " && mount --bind . . && cd . && mount -o " +
+                                   "remount,ro,bind " + (folder / "fixed") + " && " +
+                                   convertLine(folder / "in.las", folder / "fixed/out.stipple") + " --temp " +
+                                   (folder / "temp")));
+    INFO(fixed.said);
+    CHECK(fixed.code == cli::outputError);
+    CHECK(fixed.says("the folder of the output can't be written: Read-only file system (choose another"));
+    CHECK_FALSE(fs::exists(folder / "temp"));
+}
+
+TEST_CASE("an input that vanishes while it is read is named", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(1, 300000, 1), folder / "in.las");
+    patch(folder / "in.las", 179, Bytes(48, 0xFF)); // bounds that are no numbers: it is read twice
+    ConvertOptions options;
+    options.threads = 1;
+    auto result = convertFiles({folder / "in.las"}, folder / "out.stipple", options,
+                               [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
+                                   if (phase == "measure" && done == total)
+                                       fs::remove(folder / "in.las");
+                               });
+    REQUIRE_FALSE(result.ok());
+    CHECK(cli::exitCodeOf(result.error()) == cli::inputError);
+    CHECK(result.error().sentence() == (folder / "in.las") + ": can't be opened: No such file or directory");
+    CHECK(folder.files() == 0);
+}
+
+TEST_CASE("a LAZ chunk that ends too early is placed", "[failures]") {
+    TemporaryFolder folder;
+    TestScan scan = surfaceScan(1, 120000, 1); // chunks of 50,000
+    las::WriterOptions options;
+    options.grid = scan.grid;
+    options.schema = scan.schema;
+    options.pointFormat = 1;
+    options.compressed = true;
+    auto writer = las::Writer::create(folder / "in.laz", options);
+    REQUIRE(writer.ok());
+    REQUIRE((*writer)->write(scan.points).ok());
+    REQUIRE((*writer)->finish().ok());
+    Bytes bytes = fileBytes(folder / "in.laz");
+
+    std::ofstream(folder / "cut.laz", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size() / 2));
+    Ended cut = shell(convertLine(folder / "cut.laz", folder / "out.stipple"));
+    INFO(cut.said);
+    CHECK(cut.code == cli::inputError);
+    CHECK(cut.says("cut.laz, the chunk of points from 50000 on, at byte "));
+    CHECK(cut.says("ends before its last point"));
+    CHECK_FALSE(fs::exists(folder / "out.stipple"));
+
+    // The last chunk ends early: its bytes are missing, the chunk table stands behind.
+    std::uint64_t table = loadLe<std::uint64_t>(bytes.data() + loadLe<std::uint32_t>(bytes.data() + 96));
+    const std::ptrdiff_t gap = 40000;
+    Bytes shorter(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(table) - gap);
+    shorter.insert(shorter.end(), bytes.begin() + static_cast<std::ptrdiff_t>(table), bytes.end());
+    storeLe<std::uint64_t>(shorter.data() + loadLe<std::uint32_t>(bytes.data() + 96),
+                           table - static_cast<std::uint64_t>(gap));
+    std::ofstream(folder / "short.laz", std::ios::binary)
+        .write(reinterpret_cast<const char*>(shorter.data()), static_cast<std::streamsize>(shorter.size()));
+    Ended lost = shell(convertLine(folder / "short.laz", folder / "out.stipple"));
+    INFO(lost.said);
+    CHECK(lost.code == cli::inputError);
+    CHECK(lost.says("short.laz, the chunk of points from 100000 on, at byte "));
+    CHECK(folder.files() == 3);
+}
+
+TEST_CASE("headers that lie about bounds and counts are corrected, and that is said", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(0, 1000, 1), folder / "in.las");
+    Bytes far(8);
+    storeLe<double>(far.data(), 9e7);
+    patch(folder / "in.las", 179, far);
+    patch(folder / "in.las", 107, {0, 0, 0, 0x7F}); // number of points
+    Ended ended = shell(convertLine(folder / "in.las", folder / "out.stipple"));
+    INFO(ended.said);
+    CHECK(ended.code == cli::success);
+    CHECK(ended.says("warning: "));
+    CHECK(ended.says("the header counts 2130706432 points, but the file ends after 1000"));
+    CHECK(ended.says("to 90000000, but the points lie from"));
+}
+
+TEST_CASE("points of more bytes than a buffer are refused", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(0, 10, 1), folder / "in.las");
+    Bytes bytes = fileBytes(folder / "in.las");
+    std::size_t points = loadLe<std::uint32_t>(bytes.data() + 96);
+    storeLe<std::uint16_t>(bytes.data() + 105, 65535); // the length of a record
+    bytes.resize(points + 10 * 65535);
+    std::ofstream(folder / "in.las", std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    Ended ended = shell(convertLine(folder / "in.las", folder / "out.stipple"));
+    INFO(ended.said);
+    CHECK(ended.code == cli::inputError);
+    CHECK(ended.says("but at most 65536 can be converted"));
+    CHECK(folder.files() == 1);
+}
+
+TEST_CASE("a conversion in memory that is stopped in any phase leaves nothing", "[failures]") {
+    TemporaryFolder folder;
+    auto inputs = writeSix(folder);
+    for (const char* phase : {"tile", "sample"})
+        for (double part : {0.0, 0.5}) {
+            INFO("stopped in phase " << phase << " at " << part);
+            std::atomic<bool> stop{false};
+            ConvertOptions options = pieces(0);
+            options.stop = &stop;
+            auto result = convertFiles(inputs, folder / "out.stipple", options,
+                                       [&](const std::string& now, std::uint64_t done, std::uint64_t total) {
+                                           if (now == phase &&
+                                               static_cast<double>(done) >= part * static_cast<double>(total))
+                                               stop = true;
+                                       });
+            REQUIRE_FALSE(result.ok());
+            CHECK(cli::exitCodeOf(result.error()) == cli::interrupted);
+            CHECK(result.error().sentence() == "interrupted (nothing is left behind)");
+            CHECK(folder.files() == inputs.size());
+        }
+}
+
+TEST_CASE("a conversion on disk that is stopped keeps its checkpoint, and goes on to the same bytes",
+          "[failures]") {
+    TemporaryFolder folder;
+    auto inputs = writeSix(folder);
+    convertOrFail(inputs, folder / "whole.stipple", [] {
+        ConvertOptions options = pieces(1);
+        options.name = "out";
+        return options;
+    }());
+    Bytes whole = fileBytes(folder / "whole.stipple");
+    for (const char* phase : {"tile", "sample"})
+        for (double part : {0.5, 0.8}) {
+            INFO("stopped in phase " << phase << " at " << part);
+            std::atomic<bool> stop{false};
+            ConvertOptions options = pieces(1);
+            options.stop = &stop;
+            auto stopped = convertFiles(inputs, folder / "out.stipple", options,
+                                        [&](const std::string& now, std::uint64_t done, std::uint64_t total) {
+                                            if (now == phase && static_cast<double>(done) >=
+                                                                    part * static_cast<double>(total))
+                                                stop = true;
+                                        });
+            REQUIRE_FALSE(stopped.ok());
+            CHECK(cli::exitCodeOf(stopped.error()) == cli::interrupted);
+            CHECK(stopped.error().sentence().find("is kept in " + (folder / "out.stipple.work")) !=
+                  std::string::npos);
+            CHECK_FALSE(fs::exists(folder / "out.stipple"));
+            CHECK(fs::exists(folder / "out.stipple.work"));
+            ConvertResult resumed = convertOrFail(inputs, folder / "out.stipple", pieces(1));
+            CHECK(resumed.resumed);
+            CHECK((fileBytes(folder / "out.stipple") == whole));
+            CHECK_FALSE(fs::exists(folder / "out.stipple.work"));
+            fs::remove(folder / "out.stipple");
+        }
+}
