@@ -7,10 +7,10 @@
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
 #include <malloc.h>
-#include <map>
 #include <memory>
 #include <sys/resource.h>
 
@@ -178,14 +178,16 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
         "--append", arguments->options.append,
         "Add the inputs to this .stipple file (replaced when all is done, unless -o names another)");
     cli::addReadingOptions(*verb, arguments->options.input);
-    std::map<std::string, Sampling> samplings;
-    for (std::size_t i = 0; i < samplingNames.size(); ++i)
-        samplings.emplace(samplingNames[i], static_cast<Sampling>(i));
-    verb->add_option("--sampling", arguments->options.sampling,
-                     "How the points of coarse nodes are chosen: poisson (with a minimum distance; default), "
-                     "grid (one for each cell) or random")
-        ->transform(CLI::CheckedTransformer(samplings))
-        ->option_text("poisson|grid|random");
+    const std::vector<std::string> samplings(samplingNames.begin(), samplingNames.end());
+    verb->add_option_function<std::string>(
+            "--sampling",
+            [arguments, samplings](const std::string& name) {
+                auto at = std::find(samplings.begin(), samplings.end(), name) - samplings.begin();
+                arguments->options.sampling = static_cast<Sampling>(at);
+            },
+            "How the points of coarse nodes are chosen: poisson (with a minimum distance; default), "
+            "grid (one for each cell) or random")
+        ->check(CLI::IsMember(samplings));
     verb->add_flag("--strict", arguments->options.strict,
                    "Refuse inputs with points that can't be kept (no number, out of range, marked invalid)");
     verb->add_option("--progress", arguments->progress,
