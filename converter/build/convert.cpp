@@ -215,7 +215,9 @@ class Conversion {
         STIPPLE_TRY(built, build(tiles, result_.metadata,
                                  {threads_, memoryBytes_ / 2, options_.stop, options_.sizes.subtreeBytes},
                                  *blocks, journal, progress_));
-        result_.temporaryBytes = tiles.pool->spilledBytes();
+        // What an earlier run put there counts too.
+        result_.temporaryBytes = std::max(tiles.pool->spilledBytes(),
+                                          tiles.onDisk ? tiles.sums.points * tiles.layout.rowBytes() : 0);
         result_.seconds.sample = watch_.lap();
         return pack(tiles, built, *blocks);
     }
