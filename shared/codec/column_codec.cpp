@@ -91,15 +91,11 @@ void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
         to.write(values.empty() ? T{} : values[0]);
         return;
     }
-    ByteSpan bytes(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T));
-    auto plain = [&](Effort effort) {
-        ByteWriter column;
-        column.write(Method::plain);
-        writeSection(column, bytes, effort);
-        return column;
-    };
-    ByteWriter best = plain(Effort::fast);
-    const std::size_t fastSize = best.size();
+    ByteWriter best;
+    best.write(Method::plain);
+    writeSection(best,
+                 ByteSpan(reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)),
+                 sizeof(T) == 8 ? Effort::fast : Effort::thorough); // wide ones seldom repeat as strings
     auto offer = [&](ByteWriter& other) {
         if (other.size() < best.size())
             best = std::move(other);
@@ -109,12 +105,6 @@ void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
         planes.write(Method::planes);
         writePlanes<T>(planes, values);
         offer(planes);
-    }
-    // Looking harder for strings is slow, above all where there are none (intensities), and wide values
-    // seldom repeat as strings.
-    if (sizeof(T) < 8 && 4 * fastSize < 5 * best.size()) {
-        ByteWriter thorough = plain(Effort::thorough);
-        offer(thorough);
     }
     if (sizeof(T) >= 4) { // times: several returns share one, and all come from a few short spans
         ByteWriter ranked;
