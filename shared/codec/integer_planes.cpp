@@ -22,8 +22,8 @@ T zigzagDifference(T value, T before) {
 // on how a machine computes a logarithm.
 constexpr auto fractionLogs = [] {
     std::array<std::uint32_t, 256> logs{};
-    for (std::uint64_t i = 0; i < logs.size(); ++i) {
-        std::uint64_t x = (256 + i) << 22; // 1 + i/256, with 30 bits after the point
+    for (std::uint32_t i = 0; i < logs.size(); ++i) {
+        std::uint64_t x = std::uint64_t{256 + i} << 22; // 1 + i/256, with 30 bits after the point
         for (int bit = 15; bit >= 0; --bit) {
             x = x * x >> 30;
             if (x >> 31 != 0) {
