@@ -8,8 +8,13 @@
 
 namespace stipple::server {
 
-HttpResponse problemResponse(int status, const std::string& detail) {
-    nlohmann::ordered_json document{{"title", reasonPhrase(status)}, {"status", status}, {"detail", detail}};
+namespace {
+
+nlohmann::ordered_json documentOf(int status, const std::string& detail) {
+    return {{"title", reasonPhrase(status)}, {"status", status}, {"detail", detail}};
+}
+
+HttpResponse responseWith(int status, const nlohmann::ordered_json& document) {
     HttpResponse response;
     response.status = status;
     response.set("Content-Type", "application/problem+json");
@@ -18,6 +23,19 @@ HttpResponse problemResponse(int status, const std::string& detail) {
     response.body.push_back(document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
                             "\n");
     return response;
+}
+
+} // namespace
+
+HttpResponse problemResponse(int status, const std::string& detail) {
+    return responseWith(status, documentOf(status, detail));
+}
+
+HttpResponse parameterProblem(const Error& error) {
+    nlohmann::ordered_json document = documentOf(400, error.sentence());
+    if (!error.where.empty())
+        document["parameter"] = error.where;
+    return responseWith(400, document);
 }
 
 HttpResponse problemResponse(const Error& error) {

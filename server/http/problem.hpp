@@ -15,6 +15,10 @@ HttpResponse problemResponse(int status, const std::string& detail);
 // ran out, else 500. Paths of this machine do not appear in it.
 HttpResponse problemResponse(const Error& error);
 
+// 400 for a parameter of the query (server/api/query.hpp): detail is the error's sentence, and the extension
+// member "parameter" names it where error.where does.
+HttpResponse parameterProblem(const Error& error);
+
 // 405 with Allow (RFC 9110 §15.5.6), or 501 for methods nobody knows.
 HttpResponse methodNotAllowed(std::string_view method, const std::string& allow);
 
