@@ -1,6 +1,8 @@
 #include "converter/build/tile.hpp"
 
+#include "converter/build/input_parts.hpp"
 #include "converter/build/parallel.hpp"
+#include "converter/build/row_dealer.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
@@ -22,22 +24,6 @@ constexpr auto spreadBits = [] {
             table[value] |= (value >> bit & 1u) << (3 * bit);
     return table;
 }();
-
-// One part of one input.
-struct Read {
-    std::size_t input = 0, part = 0;
-    std::uint64_t points = 0;
-};
-
-std::vector<Read> readsOf(const Scan& scan) {
-    std::vector<Read> reads;
-    for (std::size_t i = 0; i < scan.inputs.size(); ++i) {
-        const std::vector<InputPart>& parts = scan.inputs[i].input->parts();
-        for (std::size_t p = 0; p < parts.size(); ++p)
-            reads.push_back({i, p, parts[p].points});
-    }
-    return reads;
-}
 
 // The cloud's bounds as the inputs state them; empty if one of them does not.
 BoxI statedBounds(const Scan& scan) {
@@ -63,18 +49,14 @@ int cellLevel(const RootCube& cube, std::uint64_t points) {
 
 // What one thread works with.
 struct Worker {
-    PointBatch raw, mapped;
-    PointSums sums;
-    // Dealing a batch: which of its points go to which cell.
-    std::vector<std::uint32_t> slotOfCell, cellOfPoint, starts, indices;
-    std::vector<std::size_t> cells; // that the batch meets
-    std::vector<std::uint8_t> rows;
+    PartReader reader;
+    RowDealer dealer;
 };
 
 class Tiling {
   public:
     Tiling(const Scan& scan, const TileOptions& options, WorkFolder& folder, const ConvertProgress& progress)
-        : scan_(scan), options_(options), folder_(folder), progress_(progress), reads_(readsOf(scan)) {}
+        : scan_(scan), options_(options), folder_(folder), progress_(progress), reads_(partsOf(scan)) {}
 
     Result<Tiles> run() {
         STIPPLE_TRY(resumed, resume());
@@ -146,19 +128,19 @@ class Tiling {
     Status readAll() {
         std::vector<Worker> workers(static_cast<std::size_t>(options_.threads));
         for (Worker& worker : workers)
-            worker.slotOfCell.assign(measuring_ ? 0 : tiles_.grid.cells(), 0);
+            worker.dealer = RowDealer(measuring_ ? 0 : tiles_.grid.cells());
         while (nextRead_ < reads_.size()) {
             std::size_t first = nextRead_, end = first;
             for (std::uint64_t points = 0; end < reads_.size() && points < options_.pointsPerRound; ++end)
                 points += reads_[end].points;
             for (Worker& worker : workers)
-                worker.sums = PointSums(scan_.inputs.size());
+                worker.reader.sums = PointSums(scan_.inputs.size());
             STIPPLE_CHECK(
                 parallelFor(end - first, options_.threads, options_.stop, [&](std::size_t i, int worker) {
-                    return readPart(reads_[first + i], workers[static_cast<std::size_t>(worker)]);
+                    return read(reads_[first + i], workers[static_cast<std::size_t>(worker)]);
                 }));
             for (const Worker& worker : workers)
-                tiles_.sums.add(worker.sums);
+                tiles_.sums.add(worker.reader.sums);
             nextRead_ = end;
             if (!measuring_ && !misfit_ && mustSave() && end < reads_.size())
                 STIPPLE_CHECK(save(false));
@@ -166,31 +148,15 @@ class Tiling {
         return {};
     }
 
-    Status readPart(const Read& read, Worker& worker) {
-        const PointInput& input = *scan_.inputs[read.input].input;
-        STIPPLE_TRY(stream, input.openPart(read.part));
-        std::uint64_t points = 0;
-        for (;;) {
-            STIPPLE_CHECK(stream->next(worker.raw));
-            if (worker.raw.size() == 0)
-                break;
-            points += worker.raw.size();
-            if (points > read.points)
-                return Error{ErrorCode::changed, "more points came than were counted when it was opened",
-                             input.description().path, "convert again when the file is complete"};
-            const PointBatch& batch = toCloud(scan_, read.input, worker.raw, worker.mapped, worker.sums);
+    Status read(const PartRef& part, Worker& worker) {
+        return readPart(scan_, part, worker.reader, [&](const PointBatch& batch) -> Status {
             if (!measuring_ && !misfit_) {
-                worker.sums.hash.add(scan_.schema, batch);
+                worker.reader.sums.hash.add(scan_.schema, batch);
                 STIPPLE_CHECK(deal(batch, worker));
             }
             report(batch.size());
-        }
-        worker.sums.report.add(stream->report());
-        if (points < read.points && stream->report().dropped() == 0)
-            return Error{ErrorCode::changed,
-                         cat(read.points - points, " points fewer came than were counted when it was opened"),
-                         input.description().path, "convert again when the file is complete"};
-        return {};
+            return {};
+        });
     }
 
     void report(std::uint64_t points) {
@@ -202,49 +168,13 @@ class Tiling {
         progress_(measuring_ ? "measure" : "tile", done_, scan_.pointCount);
     }
 
-    // The batch's points as rows, cell by cell, to the store.
     Status deal(const PointBatch& batch, Worker& worker) {
-        worker.cells.clear();
-        worker.cellOfPoint.resize(batch.size());
-        worker.starts.assign(1, 0);
-        for (std::size_t i = 0; i < batch.size(); ++i) {
-            Vec3i p = batch.positions[i];
-            if (!tiles_.layout.holds(p)) {
-                misfit_ = true;
-                return clearSlots(worker);
-            }
-            std::size_t cell = tiles_.grid.cellOf(p);
-            std::uint32_t& slot = worker.slotOfCell[cell];
-            if (slot == 0) {
-                worker.cells.push_back(cell);
-                slot = static_cast<std::uint32_t>(worker.cells.size());
-                worker.starts.push_back(0);
-            }
-            worker.cellOfPoint[i] = slot;
-            ++worker.starts[slot];
-        }
-        for (std::size_t s = 1; s < worker.starts.size(); ++s)
-            worker.starts[s] += worker.starts[s - 1];
-        // starts[s] is the end of slot s, and counts down to its beginning.
-        worker.indices.resize(batch.size());
-        for (std::size_t i = batch.size(); i-- > 0;)
-            worker.indices[--worker.starts[worker.cellOfPoint[i]]] = static_cast<std::uint32_t>(i);
-        std::size_t rowBytes = tiles_.layout.rowBytes();
-        worker.rows.resize(batch.size() * rowBytes);
-        tiles_.layout.pack(batch, worker.indices, worker.rows.data());
-        for (std::size_t s = 1; s <= worker.cells.size(); ++s) {
-            std::size_t begin = worker.starts[s],
-                        end = s < worker.cells.size() ? worker.starts[s + 1] : batch.size();
-            STIPPLE_CHECK(tiles_.cells->append(worker.cells[s - 1], worker.rows.data() + begin * rowBytes,
-                                               end - begin));
-        }
-        return clearSlots(worker);
-    }
-
-    static Status clearSlots(Worker& worker) {
-        for (std::size_t cell : worker.cells)
-            worker.slotOfCell[cell] = 0;
-        return {};
+        return worker.dealer.deal(tiles_.layout, batch, *tiles_.cells, [this](Vec3i p) {
+            if (tiles_.layout.holds(p))
+                return tiles_.grid.cellOf(p);
+            misfit_ = true;
+            return RowDealer::nowhere;
+        });
     }
 
     // Deals again if the points' own cube is not the one that the headers stated.
@@ -339,7 +269,7 @@ class Tiling {
     const TileOptions& options_;
     WorkFolder& folder_;
     const ConvertProgress& progress_;
-    const std::vector<Read> reads_;
+    const std::vector<PartRef> reads_;
     Tiles tiles_;
     BoxI layoutBounds_;
     std::size_t nextRead_ = 0; // of reads_; all before it are in the cells
