@@ -72,7 +72,7 @@ bool isPlainText(std::string_view text) {
     return true;
 }
 
-std::string joined(std::initializer_list<std::string_view> parts) {
+std::string joined(std::span<const std::string_view> parts) {
     std::string text;
     for (std::string_view part : parts)
         text.append(text.empty() ? "" : ", ").append(part);
@@ -168,7 +168,7 @@ Result<Query> Query::parse(std::string_view text) {
     return query;
 }
 
-Status Query::allowOnly(std::initializer_list<std::string_view> names) const {
+Status Query::allowOnly(std::span<const std::string_view> names) const {
     for (const auto& [name, value] : parameters_)
         if (std::find(names.begin(), names.end(), name) == names.end())
             return parameterError(name, "there is no such parameter here",
@@ -241,7 +241,7 @@ Result<std::optional<std::size_t>> Query::choice(std::string_view name,
     const auto* place = std::find(choices.begin(), choices.end(), *text);
     if (place == choices.end())
         return parameterError(name, cat(quotedValue(*text), " is not known"),
-                              cat("choose one of ", joined(choices)));
+                              cat("choose one of ", joined({choices.begin(), choices.size()})));
     return std::optional(static_cast<std::size_t>(place - choices.begin()));
 }
 

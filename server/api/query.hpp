@@ -14,6 +14,7 @@
 #include <initializer_list>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,7 +32,10 @@ class Query {
     static Result<Query> parse(std::string_view text);
 
     // Refuses parameters of other names, naming those there are.
-    Status allowOnly(std::initializer_list<std::string_view> names) const;
+    Status allowOnly(std::span<const std::string_view> names) const;
+    Status allowOnly(std::initializer_list<std::string_view> names) const {
+        return allowOnly(std::span(names.begin(), names.size()));
+    }
 
     // The decoded value; null: not given. Valid as long as the query.
     const std::string* find(std::string_view name) const;

@@ -53,6 +53,17 @@ void HttpResponse::set(std::string_view name, std::string value) {
     fields.emplace_back(name, std::move(value));
 }
 
+void HttpResponse::addToList(std::string_view name, std::string_view element) {
+    std::string list = field(name);
+    for (std::string_view rest = list; !rest.empty();) {
+        std::size_t comma = std::min(rest.find(','), rest.size());
+        if (equalIgnoringCase(trimmed(rest.substr(0, comma)), element))
+            return;
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+    }
+    set(name, list.empty() ? std::string(element) : cat(list, ", ", element));
+}
+
 std::string HttpResponse::field(std::string_view name) const {
     for (const auto& [fieldName, fieldValue] : fields)
         if (equalIgnoringCase(fieldName, name))
@@ -81,10 +92,20 @@ const char* reasonPhrase(int status) {
         return "Not Modified";
     case 400:
         return "Bad Request";
+    case 401:
+        return "Unauthorized";
+    case 403:
+        return "Forbidden";
     case 404:
         return "Not Found";
     case 405:
         return "Method Not Allowed";
+    case 406:
+        return "Not Acceptable";
+    case 408:
+        return "Request Timeout";
+    case 410:
+        return "Gone";
     case 412:
         return "Precondition Failed";
     case 413:
@@ -95,14 +116,20 @@ const char* reasonPhrase(int status) {
         return "Range Not Satisfiable";
     case 417:
         return "Expectation Failed";
+    case 429:
+        return "Too Many Requests";
     case 431:
         return "Request Header Fields Too Large";
     case 500:
         return "Internal Server Error";
     case 501:
         return "Not Implemented";
+    case 502:
+        return "Bad Gateway";
     case 503:
         return "Service Unavailable";
+    case 504:
+        return "Gateway Timeout";
     case 505:
         return "HTTP Version Not Supported";
     default:

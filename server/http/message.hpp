@@ -45,8 +45,9 @@ struct HttpResponse {
     bool sendsBody = true; // false for HEAD: Content-Length speaks of a body that does not follow
     bool closes = false;   // the connection can't be used after this response
 
-    void set(std::string_view name, std::string value); // adds or replaces
-    std::string field(std::string_view name) const;     // empty where absent
+    void set(std::string_view name, std::string value);              // adds or replaces
+    void addToList(std::string_view name, std::string_view element); // "Vary: Origin, Accept"; each once
+    std::string field(std::string_view name) const;                  // empty where absent
     std::uint64_t bodyBytes() const;
 };
 

@@ -1,8 +1,9 @@
 #include "server/site/site.hpp"
 
+#include "server/api/api.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/representation.hpp"
-#include "server/site/cloud_json.hpp"
+#include "server/site/cloud_problem.hpp"
 #include "server/site/request_rules.hpp"
 #include "shared/base/text.hpp"
 
@@ -36,14 +37,6 @@ HttpResponse answerOptions() {
     return response;
 }
 
-// A cloud whose file can't be used right now: being replaced, cut, or no cloud any more.
-HttpResponse cloudProblem(const Error& error) {
-    bool isDamaged = error.code == ErrorCode::truncated || error.code == ErrorCode::corrupt ||
-                     error.code == ErrorCode::unsupported;
-    return isDamaged ? problemResponse(503, cat("the file of this cloud can't be used: ", error.what))
-                     : problemResponse(error);
-}
-
 } // namespace
 
 HttpResponse Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
@@ -52,6 +45,7 @@ HttpResponse Site::answer(const HttpRequest& request, std::int64_t nowSeconds) c
         response = std::move(*refusal);
     else
         response = route(request, nowSeconds);
+    setProblemInstance(response, request.target);
     setCommonFields(response);
     if (request.method == "HEAD")
         response.sendsBody = false;
@@ -72,34 +66,13 @@ HttpResponse Site::route(const HttpRequest& request, std::int64_t nowSeconds) co
         return methodNotAllowed(request.method, allowedMethods);
 
     const std::vector<std::string>& path = target->segments;
-    if (path.size() == 3 && path[0] == "api" && path[1] == "v1" && path[2] == "clouds")
-        return answerList(request, nowSeconds);
-    if (path.size() == 4 && path[0] == "api" && path[1] == "v1" && path[2] == "clouds")
-        return answerCloud(request, path[3], nowSeconds);
+    if (isApiPath(*target))
+        return std::get<HttpResponse>(answerApi(request, *target, *catalog_, nowSeconds));
     if (path.size() == 2 && path[0] == "clouds")
         return answerFile(request, path[1], nowSeconds);
     if (!path.empty() && (path[0] == "api" || path[0] == "clouds"))
         return problemResponse(404, "there is nothing at this address");
     return page_.answer(request, *target, nowSeconds);
-}
-
-HttpResponse Site::answerList(const HttpRequest& request, std::int64_t nowSeconds) const {
-    std::vector<NamedCloud> clouds;
-    for (const std::string& id : catalog_->ids())
-        if (auto version = catalog_->current(id))
-            clouds.emplace_back(id, *version); // one that can't be used now answers for itself when asked
-    return answerRepresentation(
-        request, Representation::ofText(cloudListJson(clouds), "application/json", revalidated), nowSeconds);
-}
-
-HttpResponse Site::answerCloud(const HttpRequest& request, const std::string& id,
-                               std::int64_t nowSeconds) const {
-    auto version = catalog_->current(id);
-    if (!version)
-        return cloudProblem(version.error());
-    return answerRepresentation(
-        request, Representation::ofText(cloudJson({id, *version}), "application/json", revalidated),
-        nowSeconds);
 }
 
 HttpResponse Site::answerFile(const HttpRequest& request, std::string_view name,

@@ -2,8 +2,7 @@
 // any.
 //
 //   /                        the page              GET HEAD OPTIONS
-//   /api/v1/clouds           the list of clouds    GET HEAD OPTIONS
-//   /api/v1/clouds/ID        one cloud             GET HEAD OPTIONS
+//   /api/v1/…                server/api            GET HEAD OPTIONS
 //   /clouds/ID.stipple       its file, in ranges   GET HEAD OPTIONS
 #pragma once
 
@@ -29,9 +28,6 @@ class Site {
 
   private:
     HttpResponse route(const HttpRequest& request, std::int64_t nowSeconds) const;
-    HttpResponse answerList(const HttpRequest& request, std::int64_t nowSeconds) const;
-    HttpResponse answerCloud(const HttpRequest& request, const std::string& id,
-                             std::int64_t nowSeconds) const;
     HttpResponse answerFile(const HttpRequest& request, std::string_view name, std::int64_t nowSeconds) const;
 
     std::unique_ptr<CloudCatalog> catalog_;

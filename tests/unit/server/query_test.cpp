@@ -133,7 +133,8 @@ TEST_CASE("a refused parameter is a problem document that names it") {
     CHECK(response.status == 400);
     CHECK(response.field("Content-Type") == "application/problem+json");
     auto document = nlohmann::json::parse(std::get<std::string>(response.body.at(0)));
-    CHECK(document == nlohmann::json{{"title", "Bad Request"},
+    CHECK(document == nlohmann::json{{"type", "/api/v1/problems/invalid-parameter"},
+                                     {"title", "Invalid parameter"},
                                      {"status", 400},
                                      {"detail", "box: it is given twice (give it once)"},
                                      {"parameter", "box"}});

@@ -1,0 +1,38 @@
+// What an endpoint of the API is: a path, what may be asked of it, and a function from a request to its
+// answer. One table of these (endpoints.cpp) routes requests and is what /api/v1/openapi.json says.
+#pragma once
+
+#include "server/api/parameter.hpp"
+#include "server/http/job.hpp"
+#include "server/http/message.hpp"
+#include "server/site/cloud_catalog.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stipple::server {
+
+// A GET or HEAD of an endpoint. Everything it refers to outlives the look-up, not a job: jobs copy what they
+// need (`cloud` above all, which keeps this version of the file open).
+struct ApiCall {
+    const HttpRequest& request;
+    const Query& query;             // has no parameter but those of the endpoint
+    std::vector<std::string> names; // what the path has for each {…} of the endpoint's, decoded
+    // Of {id}, where the endpoint's path has one.
+    std::string id;
+    std::shared_ptr<const CloudVersion> cloud;
+    std::int64_t nowSeconds = 0; // since 1970
+    const CloudCatalog& catalog;
+};
+
+struct Endpoint {
+    std::string_view path; // below /api/v1: "/clouds/{id}/nodes/{key}"
+    Answer (*answer)(const ApiCall& call);
+    std::span<const Parameter> parameters = {}; // of the query; others are refused
+};
+
+} // namespace stipple::server

@@ -1,0 +1,21 @@
+#include "server/site/cloud_problem.hpp"
+
+#include "server/http/problem.hpp"
+
+namespace stipple::server {
+
+HttpResponse cloudProblem(const Error& error) {
+    switch (error.code) {
+    case ErrorCode::notFound:
+        return problemResponse({problem_types::noSuchCloud, "there is no cloud of this id"});
+    case ErrorCode::truncated:
+    case ErrorCode::corrupt:
+    case ErrorCode::unsupported:
+    case ErrorCode::networkFailed:
+        return jobProblem(error);
+    default:
+        return problemResponse(error);
+    }
+}
+
+} // namespace stipple::server
