@@ -1,6 +1,7 @@
 #include "shared/io/output_file.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/io/file_writing.hpp"
 
 #include <cerrno>
 #include <cstdio>
@@ -50,15 +51,8 @@ Status OutputFile::overwrite(std::uint64_t offset, ByteSpan bytes) {
 }
 
 Status OutputFile::writeAt(std::uint64_t offset, ByteSpan bytes) {
-    while (!bytes.empty()) {
-        ssize_t part = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (part < 0 && errno == EINTR)
-            continue;
-        if (part <= 0)
-            return failure("can't be written");
-        bytes = bytes.subspan(static_cast<std::size_t>(part));
-        offset += static_cast<std::uint64_t>(part);
-    }
+    if (!writeFully(descriptor_, offset, bytes))
+        return failure("can't be written");
     return {};
 }
 
@@ -74,11 +68,7 @@ Status OutputFile::commit() {
 }
 
 Error OutputFile::failure(const char* what) const {
-    int code = errno;
-    return {ErrorCode::writeFailed, cat(what, ": ", std::strerror(code)), path_,
-            code == ENOSPC || code == EDQUOT ? "free space on that disk, or write elsewhere"
-            : code == EFBIG                  ? "raise the limit on the size of files (ulimit -f)"
-                                             : ""};
+    return writeFailure(what, path_, "write elsewhere");
 }
 
 } // namespace stipple

@@ -1,8 +1,10 @@
 #include "shared/io/scratch_file.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/io/file_writing.hpp"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -28,6 +30,25 @@ Result<std::unique_ptr<ScratchFile>> ScratchFile::open(const std::string& path) 
     return std::unique_ptr<ScratchFile>(new ScratchFile(descriptor, path, size));
 }
 
+Result<std::unique_ptr<ScratchFile>> ScratchFile::createNameless(const std::string& folder) {
+    int descriptor = -1;
+#ifdef O_TMPFILE
+    descriptor = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
+#endif
+    if (descriptor < 0) { // a file system that knows no files without a name
+        std::string path = cat(folder, "/stipple-XXXXXX");
+        descriptor = ::mkstemp(path.data());
+        if (descriptor >= 0)
+            ::unlink(path.c_str());
+    }
+    if (descriptor < 0)
+        return Error{ErrorCode::writeFailed, cat("no file can be created there: ", std::strerror(errno)),
+                     folder, "choose another folder for temporary files"};
+    std::unique_ptr<ScratchFile> file(new ScratchFile(descriptor, folder, 0));
+    file->keep(); // there is no name to remove
+    return file;
+}
+
 ScratchFile::~ScratchFile() {
     ::close(descriptor_);
     if (!keep_)
@@ -35,15 +56,8 @@ ScratchFile::~ScratchFile() {
 }
 
 Status ScratchFile::write(std::uint64_t offset, ByteSpan bytes) {
-    while (!bytes.empty()) {
-        ssize_t part = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (part < 0 && errno == EINTR)
-            continue;
-        if (part <= 0)
-            return failure("can't be written");
-        bytes = bytes.subspan(static_cast<std::size_t>(part));
-        offset += static_cast<std::uint64_t>(part);
-    }
+    if (!writeFully(descriptor_, offset, bytes))
+        return failure("can't be written");
     return {};
 }
 
@@ -75,11 +89,7 @@ void ScratchFile::discard(std::uint64_t offset, std::uint64_t size) {
 }
 
 Error ScratchFile::failure(const char* what) const {
-    int code = errno;
-    return {ErrorCode::writeFailed, cat(what, ": ", std::strerror(code)), path_,
-            code == ENOSPC || code == EDQUOT ? "free space on that disk, or choose another folder"
-            : code == EFBIG                  ? "raise the limit on the size of files (ulimit -f)"
-                                             : ""};
+    return writeFailure(what, path_, "choose another folder");
 }
 
 } // namespace stipple

@@ -21,6 +21,9 @@ class ScratchFile {
     static Result<std::unique_ptr<ScratchFile>> create(const std::string& path);
     // One that an earlier run left. notFound if there is none.
     static Result<std::unique_ptr<ScratchFile>> open(const std::string& path);
+    // A new file in `folder` that has no name: it goes with the object, or with the process however that
+    // ends.
+    static Result<std::unique_ptr<ScratchFile>> createNameless(const std::string& folder);
     ~ScratchFile();
     ScratchFile(const ScratchFile&) = delete;
     ScratchFile& operator=(const ScratchFile&) = delete;
@@ -39,6 +42,7 @@ class ScratchFile {
 
     // The file stays when the object goes.
     void keep() { keep_ = true; }
+    // Its folder if it has no name.
     const std::string& path() const { return path_; }
 
   private:

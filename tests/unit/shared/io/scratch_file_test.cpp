@@ -70,6 +70,23 @@ TEST_CASE("a scratch file goes with its object unless it was told to stay", "[sc
     CHECK(std::filesystem::file_size(folder.file("stays")) == 0);
 }
 
+TEST_CASE("a scratch file without a name is nowhere to be seen, and works like any other", "[scratch]") {
+    TemporaryFolder folder;
+    auto file = ScratchFile::createNameless(folder.file(""));
+    REQUIRE(file.ok());
+    CHECK(folder.fileCount() == 0);
+    REQUIRE((*file)->write((*file)->reserve(1000), pattern(1000, 4)).ok());
+    Bytes back(1000);
+    REQUIRE((*file)->read(0, back).ok());
+    CHECK(back == pattern(1000, 4));
+    CHECK(folder.fileCount() == 0);
+
+    auto nowhere = ScratchFile::createNameless(folder.file("none"));
+    REQUIRE_FALSE(nowhere.ok());
+    CHECK(nowhere.error().code == ErrorCode::writeFailed);
+    CHECK(nowhere.error().where == folder.file("none"));
+}
+
 TEST_CASE("a scratch file that is not there is absent, one in no folder can't be made", "[scratch]") {
     TemporaryFolder folder;
     auto absent = ScratchFile::open(folder.file("none"));
