@@ -1,20 +1,18 @@
 #include "converter/export/geojson.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/geometry/exact_sum.hpp"
 #include "shared/io/file_source.hpp"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace stipple {
 
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr double largestCoordinate = 1e100, smallestCoordinate = 1e-100; // polygon.hpp is exact between
 
 class RegionReader {
   public:
@@ -144,10 +142,7 @@ class RegionReader {
     }
 
     static bool isCoordinate(const Json& json) {
-        if (!json.is_number())
-            return false;
-        double size = std::abs(json.get<double>());
-        return size == 0 || (size >= smallestCoordinate && size <= largestCoordinate);
+        return json.is_number() && isExactlySummable(json.get<double>());
     }
 
     const std::string& what_;

@@ -1,6 +1,7 @@
 #include "shared/geometry/polygon.hpp"
 
-#include <array>
+#include "shared/geometry/exact_sum.hpp"
+
 #include <cmath>
 #include <utility>
 
@@ -8,40 +9,13 @@ namespace stipple {
 
 namespace {
 
-// The exact sum of doubles as a sum of parts that do not overlap, smallest first.
-struct Expansion {
-    std::array<double, 12> parts{};
-    std::size_t count = 0;
-
-    void add(double value) {
-        for (std::size_t i = 0; i < count; ++i) {
-            double sum = value + parts[i];
-            double virtualPart = sum - value;
-            parts[i] = (value - (sum - virtualPart)) + (parts[i] - virtualPart); // what the sum lost
-            value = sum;
-        }
-        parts[count++] = value;
-    }
-    void addProduct(double a, double b) {
-        double product = a * b;
-        add(std::fma(a, b, -product)); // what the product lost
-        add(product);
-    }
-    int sign() const {
-        for (std::size_t i = count; i-- > 0;)
-            if (parts[i] != 0)
-                return parts[i] > 0 ? 1 : -1;
-        return 0;
-    }
-};
-
 int signOf(double value) {
     return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
 // (ax - cx)(by - cy) - (ay - cy)(bx - cx), multiplied out: cx cy falls away.
 int exactOrientation(Point2d a, Point2d b, Point2d c) {
-    Expansion sum;
+    ExactSum<12> sum;
     sum.addProduct(a.x, b.y);
     sum.addProduct(-a.x, c.y);
     sum.addProduct(-c.x, b.y);

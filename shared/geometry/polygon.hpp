@@ -6,14 +6,15 @@
 // several polygons is their union, also where they overlap.
 //
 // The answers are exact for the doubles given: which side of an edge a point lies on is computed without
-// rounding wherever rounding could matter (Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast
-// Robust Geometric Predicates", 1997, §2 and §4.2). That holds for coordinates of magnitude 1e-100 to 1e100,
-// and 0.
+// rounding wherever rounding could matter (shared/geometry/exact_sum.hpp). That holds for coordinates of
+// magnitude 1e-100 to 1e100, and 0.
 //
 // Thread: a region is not altered once made; any number of threads may ask.
 #pragma once
 
 #include "shared/geometry/box.hpp"
+#include "shared/geometry/overlap.hpp"
+#include "shared/geometry/point2d.hpp"
 
 #include <cstdint>
 #include <span>
@@ -21,16 +22,8 @@
 
 namespace stipple {
 
-struct Point2d {
-    double x = 0, y = 0;
-    friend bool operator==(const Point2d&, const Point2d&) = default;
-};
-
 // Sign of twice the signed area of a, b, c: 1 if c lies to the left of a → b, -1 to the right, 0 on the line.
 int orientation(Point2d a, Point2d b, Point2d c);
-
-// How a box lies to a region.
-enum class Overlap : std::uint8_t { none, partial, whole };
 
 // A closed ring with its edges indexed by y: a question looks at the edges near its y alone.
 class Ring {
