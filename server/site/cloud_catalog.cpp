@@ -1,8 +1,6 @@
 #include "server/site/cloud_catalog.hpp"
 
 #include "shared/base/text.hpp"
-#include "shared/format/block_frame.hpp"
-#include "shared/format/cloud_file.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -13,7 +11,6 @@ namespace stipple::server {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::uint64_t maxMetadataBytes = 64ull << 20;
 constexpr const char* convertAdvice = "make one with `stipple convert SCAN -o NAME.stipple`";
 
 std::string idOf(const std::string& path) {
@@ -42,44 +39,7 @@ Result<std::vector<std::string>> filesOf(const std::string& path) {
     return files;
 }
 
-Result<Bytes> readPart(const OpenFile& file, ByteRange range, const std::string& what) {
-    std::uint64_t sizeBytes = file.identity().sizeBytes;
-    if (range.offset > sizeBytes || range.size > sizeBytes - range.offset)
-        return Error{ErrorCode::truncated, cat("the file ends inside its ", what), "", convertAdvice};
-    if (range.size > maxMetadataBytes)
-        return Error{ErrorCode::limitExceeded, cat("the ", what, " is larger than 64 MiB"), "", ""};
-    Bytes bytes(static_cast<std::size_t>(range.size));
-    if (!file.readAt(range.offset, bytes.data(), bytes.size()))
-        return Error{ErrorCode::ioFailed, cat("the ", what, " can't be read"), "", ""};
-    return bytes;
-}
-
-Status readMetadata(const OpenFile& file, CloudVersion& version) {
-    std::uint64_t sizeBytes = file.identity().sizeBytes;
-    STIPPLE_TRY(head, readPart(file, {0, std::min<std::uint64_t>(fileHeaderBytes, sizeBytes)}, "header"));
-    STIPPLE_TRY(header, parseFileHeader(head));
-    if (header.fileBytes != sizeBytes)
-        return Error{ErrorCode::truncated,
-                     cat("the file has ", sizeBytes, " bytes, its header says ", header.fileBytes), "",
-                     "copy or convert it again"};
-    STIPPLE_TRY(block, readPart(file, header.metadata, "metadata"));
-    STIPPLE_TRY(metadata, parseMetadata(block));
-    STIPPLE_TRY(text, unframeBlock(block, "metadata", header.metadata.offset));
-    version.metadata = std::move(metadata);
-    version.metadataText.assign(text.begin(), text.end());
-    return {};
-}
-
 } // namespace
-
-Result<std::shared_ptr<const CloudVersion>> readCloud(std::shared_ptr<const OpenFile> file,
-                                                      const std::string& name) {
-    auto version = std::make_shared<CloudVersion>();
-    if (Status status = readMetadata(*file, *version); !status)
-        return status.error().at(name);
-    version->file = std::move(file);
-    return std::shared_ptr<const CloudVersion>(std::move(version));
-}
 
 Result<CloudCatalog::Opened> CloudCatalog::open(const std::vector<std::string>& paths) {
     Opened opened{std::make_unique<CloudCatalog>(), {}};

@@ -3,9 +3,8 @@
 // Thread: any.
 #pragma once
 
-#include "server/files/open_file.hpp"
+#include "server/site/cloud_version.hpp"
 #include "shared/base/result.hpp"
-#include "shared/format/cloud_metadata.hpp"
 
 #include <memory>
 #include <mutex>
@@ -13,13 +12,6 @@
 #include <vector>
 
 namespace stipple::server {
-
-// One version of one cloud's file.
-struct CloudVersion {
-    std::shared_ptr<const OpenFile> file;
-    CloudMetadata metadata;
-    std::string metadataText; // the file's own JSON document
-};
 
 class CloudCatalog {
   public:
@@ -50,9 +42,5 @@ class CloudCatalog {
     std::vector<std::string> ids_; // parallel to entries_
     std::vector<std::unique_ptr<Entry>> entries_;
 };
-
-// Reads header and metadata of an opened file. Memory: the metadata's size, at most 64 MiB.
-Result<std::shared_ptr<const CloudVersion>> readCloud(std::shared_ptr<const OpenFile> file,
-                                                      const std::string& name);
 
 } // namespace stipple::server

@@ -30,8 +30,8 @@ Json summary(const NamedCloud& cloud) {
             {"address", cloudAddress(id)},
             {"pointCount", version->metadata.pointCount},
             {"bounds", boundsJson(version->metadata)},
-            {"sizeBytes", version->file->identity().sizeBytes},
-            {"etag", version->file->identity().entityTag()}};
+            {"sizeBytes", version->sizeBytes()},
+            {"etag", version->validators.etag}};
 }
 
 } // namespace
