@@ -53,8 +53,16 @@ struct HttpResponse {
 
 const char* reasonPhrase(int status);
 
-// Status line and fields with Date, Content-Length (RFC 9110 §8.6: not with 204 and 304) and Connection,
-// up to and with the empty line.
-std::string responseHead(const HttpResponse& response, std::int64_t nowSeconds, bool keepsAlive);
+// How a reader finds the end of a body (RFC 9112 §6.3).
+enum class BodyFraming {
+    length,     // Content-Length
+    chunked,    // chunked transfer coding
+    untilClose, // the end of the connection; for HTTP/1.0
+};
+
+// Status line and fields with Date, Content-Length (RFC 9110 §8.6: not with 204 and 304) or
+// Transfer-Encoding, and Connection, up to and with the empty line.
+std::string responseHead(const HttpResponse& response, std::int64_t nowSeconds, bool keepsAlive,
+                         BodyFraming framing = BodyFraming::length);
 
 } // namespace stipple::server

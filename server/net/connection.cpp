@@ -1,6 +1,7 @@
 #include "server/net/connection.hpp"
 
-#include "server/net/body_sender.hpp"
+#include "server/http/problem.hpp"
+#include "server/net/job_answer.hpp"
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
@@ -19,6 +20,7 @@ using Tcp = net::ip::tcp;
 using Failure = boost::system::error_code;
 constexpr auto answered = net::as_tuple(net::use_awaitable);
 constexpr std::chrono::milliseconds lingerTime{1000};
+constexpr std::chrono::hours untilTheJobSays{24 * 365}; // it has limits of its own
 constexpr std::size_t readBytes = 4096;
 // Outcomes of readHeader beside the status of a refusal.
 constexpr int headerRead = 0, clientLeft = -1;
@@ -132,43 +134,92 @@ net::awaitable<bool> Connection::answerNext() {
     int status = co_await readHeader(parser);
     if (status == clientLeft)
         co_return false;
+    Exchange exchange;
     if (status != headerRead) {
-        HttpRequest unknown;
-        co_await sendAndLog(unknown, answerUnreadable(status), false);
-        co_return false;
+        co_await sendWhole(exchange, unreadable(status));
+    } else {
+        exchange.request = requestOf(parser.get());
+        exchange.keepsAlive = wantsKeepAlive(exchange.request);
+        Answer answer = loop_.state().handler->answer(exchange.request, std::time(nullptr));
+        if (auto* job = std::get_if<Job>(&answer))
+            co_await answerJob(exchange, std::move(*job));
+        else
+            co_await sendWhole(exchange, std::get<HttpResponse>(answer));
     }
-    HttpRequest request = requestOf(parser.get());
-    HttpResponse response = loop_.state().site->answer(request, std::time(nullptr));
-    bool keepsAlive = wantsKeepAlive(request) && !response.closes && !loop_.isStopping();
-    bool isSent = co_await sendAndLog(request, std::move(response), keepsAlive);
-    co_return isSent&& keepsAlive;
+    log(exchange);
+    if (!exchange.outcome.isComplete)
+        cut(); // short of Content-Length or of the last chunk, which is how the client sees it
+    co_return exchange.outcome.isComplete&& exchange.keepsAlive;
 }
 
-net::awaitable<bool> Connection::sendAndLog(const HttpRequest& request, HttpResponse response,
-                                            bool keepsAlive) {
-    auto begin = Clock::now();
-    std::string head = responseHead(response, std::time(nullptr), keepsAlive);
-    SendOutcome outcome = co_await sendResponse(loop_, socket_, std::move(head), response,
-                                                [this] { allow(limits_.noProgress); });
-    ServerState& state = loop_.state();
-    if (state.log) {
-        using namespace std::chrono;
-        RequestRecord record;
-        record.timeMs = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
-        record.client = client_;
-        record.method = request.method;
-        record.target = request.target;
-        record.range = request.field("Range").value_or("");
-        record.status = response.status;
-        record.bodyBytes = outcome.bodyBytes;
-        record.milliseconds = duration<double, std::milli>(Clock::now() - begin).count();
-        record.isComplete = outcome.isComplete;
-        std::lock_guard lock(state.logMutex);
-        state.log(record);
+HttpResponse Connection::unreadable(int status) const {
+    const char* detail = status == 431   ? "the header is too large"
+                         : status == 505 ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
+                                         : "this is not an HTTP request";
+    HttpResponse response = problemResponse(status, detail);
+    loop_.state().handler->complete(HttpRequest(), response);
+    return response;
+}
+
+net::awaitable<void> Connection::sendWhole(Exchange& exchange, const HttpResponse& response) {
+    exchange.status = response.status;
+    exchange.keepsAlive = exchange.keepsAlive && !response.closes && !loop_.isStopping();
+    std::string head = responseHead(response, std::time(nullptr), exchange.keepsAlive);
+    exchange.outcome = co_await sendResponse(loop_, socket_, std::move(head), response,
+                                             [this] { allow(limits_.noProgress); });
+}
+
+net::awaitable<void> Connection::answerJob(Exchange& exchange, Job job) {
+    exchange.job = job.kind;
+    bool headOnly = exchange.request.method == "HEAD";
+    allow(untilTheJobSays);
+    JobAnswer answer(loop_, socket_, client_, std::move(job), headOnly);
+    std::optional<HttpResponse> response = co_await answer.wait();
+    if (!response)
+        co_return;
+    loop_.state().handler->complete(exchange.request, *response);
+    if (!answer.isStreamed()) {
+        co_await sendWhole(exchange, *response);
+        co_return;
     }
-    if (!outcome.isComplete)
-        close(); // short of Content-Length, which is how the client sees it
-    co_return outcome.isComplete;
+    exchange.status = response->status;
+    BodyFraming framing = exchange.request.version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
+    exchange.keepsAlive =
+        exchange.keepsAlive && framing == BodyFraming::chunked && !response->closes && !loop_.isStopping();
+    std::string head = responseHead(*response, std::time(nullptr), exchange.keepsAlive, framing);
+    auto onProgress = [this] { allow(limits_.noProgress); };
+    if (headOnly)
+        exchange.outcome = co_await sendResponse(loop_, socket_, std::move(head), *response, onProgress);
+    else
+        exchange.outcome = co_await answer.sendBody(std::move(head), framing, onProgress);
+}
+
+void Connection::log(const Exchange& exchange) const {
+    ServerState& state = loop_.state();
+    if (!state.log)
+        return;
+    using namespace std::chrono;
+    RequestRecord record;
+    record.timeMs = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
+    record.client = client_;
+    record.method = exchange.request.method;
+    record.target = exchange.request.target;
+    record.range = exchange.request.field("Range").value_or("");
+    record.job = exchange.job;
+    record.status = exchange.status;
+    record.bodyBytes = exchange.outcome.bodyBytes;
+    record.milliseconds = duration<double, std::milli>(Clock::now() - exchange.begin).count();
+    record.isComplete = exchange.outcome.isComplete;
+    std::lock_guard lock(state.logMutex);
+    state.log(record);
+}
+
+// A reset, not an orderly end: where an answer reaches until the end of the connection, that is the only
+// difference between a whole one and half of one.
+void Connection::cut() {
+    Failure ignored;
+    socket_.set_option(net::socket_base::linger(true, 0), ignored);
+    close();
 }
 
 // Closing a socket with unread bytes resets the connection, and the client may lose the answer that it has

@@ -2,6 +2,7 @@
 // Internal to server/net; lives on one loop's thread.
 #pragma once
 
+#include "server/net/body_sender.hpp"
 #include "server/net/loop.hpp"
 
 #include <boost/asio/awaitable.hpp>
@@ -27,13 +28,25 @@ class Connection {
     bool isLate(Clock::time_point now) const { return now >= deadline_; }
 
   private:
+    // One request and what becomes of it.
+    struct Exchange {
+        HttpRequest request;
+        Clock::time_point begin = Clock::now();
+        std::string job;
+        int status = 499; // until there is an answer
+        SendOutcome outcome;
+        bool keepsAlive = false;
+    };
     using RequestParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
     boost::asio::awaitable<bool> waitForRequest();
     boost::asio::awaitable<int> readHeader(RequestParser& parser);
     boost::asio::awaitable<bool> answerNext(); // true: the connection goes on
-    boost::asio::awaitable<bool> sendAndLog(const HttpRequest& request, HttpResponse response,
-                                            bool keepsAlive);
+    boost::asio::awaitable<void> answerJob(Exchange& exchange, Job job);
+    boost::asio::awaitable<void> sendWhole(Exchange& exchange, const HttpResponse& response);
+    HttpResponse unreadable(int status) const;
+    void log(const Exchange& exchange) const;
     boost::asio::awaitable<void> closeGently();
+    void cut();
     void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
 
     Loop& loop_;

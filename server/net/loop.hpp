@@ -21,9 +21,12 @@ namespace stipple::server {
 
 // What all loops share.
 struct ServerState {
+    explicit ServerState(const ServerLimits& chosen) : limits(chosen), jobs(chosen.jobs) {}
+
     ServerLimits limits;
-    std::shared_ptr<const Site> site;
+    std::shared_ptr<const RequestHandler> handler;
     RequestLog log;
+    JobPool jobs;
     std::mutex logMutex;
     std::atomic<int> openConnections{0};
     std::mutex drainedMutex;

@@ -11,7 +11,8 @@ struct RequestRecord {
     std::int64_t timeMs = 0; // since 1970, when the answer was finished
     std::string client;      // address without port
     std::string method, target, range;
-    int status = 0;
+    std::string job;             // its kind, for an answer that a job made
+    int status = 0;              // 499: the client left before there was one
     std::uint64_t bodyBytes = 0; // of the body, that were sent
     double milliseconds = 0;     // from the end of the request's header to the last byte handed over
     bool isComplete = true;      // false: the connection was cut before the end of the answer

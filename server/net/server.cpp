@@ -37,9 +37,9 @@ Result<Tcp::endpoint> resolve(const std::string& host, std::uint16_t port) {
 
 class BeastServer final : public Server {
   public:
-    BeastServer(const ServerOptions& options, std::shared_ptr<const Site> site, RequestLog log) {
-        state_.limits = options.limits;
-        state_.site = std::move(site);
+    BeastServer(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log)
+        : state_(options.limits) {
+        state_.handler = std::move(handler);
         state_.log = std::move(log);
         int cores = static_cast<int>(std::thread::hardware_concurrency());
         int threads = options.threads > 0 ? options.threads : std::clamp(cores, 1, 8);
@@ -52,6 +52,7 @@ class BeastServer final : public Server {
     ~BeastServer() override {
         for (auto& loop : loops_)
             loop->join();
+        state_.jobs.end(); // before the loops that jobs report to
     }
 
     Status listen(const std::string& host, std::uint16_t port) {
@@ -85,6 +86,7 @@ class BeastServer final : public Server {
                                : cat("http://", host, ":", port(), "/");
     }
     int openConnections() const override { return state_.openConnections; }
+    JobCounts jobCounts() const override { return state_.jobs.counts(); }
 
     void stop() override {
         net::post(loops_.front()->context(), [this] { stopAccepting(); });
@@ -149,10 +151,10 @@ class BeastServer final : public Server {
 
 } // namespace
 
-Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options, std::shared_ptr<const Site> site,
-                                              RequestLog log) {
+Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
+                                              std::shared_ptr<const RequestHandler> handler, RequestLog log) {
     std::signal(SIGPIPE, SIG_IGN);
-    auto server = std::make_unique<BeastServer>(options, std::move(site), std::move(log));
+    auto server = std::make_unique<BeastServer>(options, std::move(handler), std::move(log));
     STIPPLE_CHECK(server->listen(options.host, options.port));
     return std::unique_ptr<Server>(std::move(server));
 }

@@ -1,4 +1,4 @@
-// The server's sockets: accepts connections, reads requests, hands them to a Site, sends the answers.
+// The server's sockets: accepts connections, reads requests, hands them to a handler, sends the answers.
 //
 // Threads: one event loop a thread; a connection stays on its loop, so nothing of it is locked. The calls
 // here may come from any thread.
@@ -10,8 +10,9 @@
 // The process ignores SIGPIPE from the first server on: a client that leaves must not end the program.
 #pragma once
 
+#include "server/http/handler.hpp"
+#include "server/jobs/job_pool.hpp"
 #include "server/net/request_log.hpp"
-#include "server/site/site.hpp"
 #include "shared/base/result.hpp"
 
 #include <chrono>
@@ -28,6 +29,7 @@ struct ServerLimits {
     std::chrono::milliseconds header{10'000};     // from a request's first byte to the end of its header
     std::chrono::milliseconds noProgress{30'000}; // for each 256 KiB of an answer to leave: 8.7 kB/s at least
     std::chrono::milliseconds sweep{250};         // how often the limits are looked at
+    JobLimits jobs;
 };
 
 struct ServerOptions {
@@ -40,14 +42,15 @@ struct ServerOptions {
 class Server {
   public:
     // Binds, listens and runs. Errors (networkFailed): the host is none of this machine's, the port is taken.
-    static Result<std::unique_ptr<Server>> start(const ServerOptions& options,
-                                                 std::shared_ptr<const Site> site, RequestLog log);
+    static Result<std::unique_ptr<Server>>
+    start(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log);
     // Cuts what still runs and waits for the threads.
     virtual ~Server() = default;
 
     virtual std::uint16_t port() const = 0;
     virtual std::string address() const = 0; // "http://127.0.0.1:8017/"
     virtual int openConnections() const = 0;
+    virtual JobCounts jobCounts() const = 0;
 
     // First step of ending: accepts nothing more, closes idle connections, lets answers finish.
     virtual void stop() = 0;

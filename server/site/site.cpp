@@ -39,20 +39,25 @@ HttpResponse answerOptions() {
 
 } // namespace
 
-HttpResponse Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
-    HttpResponse response;
+Answer Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
+    Answer answer;
     if (auto refusal = checkRequestRules(request))
-        response = std::move(*refusal);
+        answer = std::move(*refusal);
     else
-        response = route(request, nowSeconds);
+        answer = route(request, nowSeconds);
+    if (auto* response = std::get_if<HttpResponse>(&answer))
+        complete(request, *response);
+    return answer;
+}
+
+void Site::complete(const HttpRequest& request, HttpResponse& response) const {
     setProblemInstance(response, request.target);
     setCommonFields(response);
     if (request.method == "HEAD")
         response.sendsBody = false;
-    return response;
 }
 
-HttpResponse Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
+Answer Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
     if (request.method == "OPTIONS" && request.target == "*")
         return answerOptions();
     if (request.target.size() > maxTargetBytes)
@@ -67,7 +72,7 @@ HttpResponse Site::route(const HttpRequest& request, std::int64_t nowSeconds) co
 
     const std::vector<std::string>& path = target->segments;
     if (isApiPath(*target))
-        return std::get<HttpResponse>(answerApi(request, *target, *catalog_, nowSeconds));
+        return answerApi(request, *target, *catalog_, nowSeconds);
     if (path.size() == 2 && path[0] == "clouds")
         return answerFile(request, path[1], nowSeconds);
     if (!path.empty() && (path[0] == "api" || path[0] == "clouds"))
@@ -85,16 +90,6 @@ HttpResponse Site::answerFile(const HttpRequest& request, std::string_view name,
     return answerRepresentation(
         request, Representation::ofFile((*version)->file, "application/octet-stream", revalidated),
         nowSeconds);
-}
-
-HttpResponse answerUnreadable(int status) {
-    const char* detail = status == 431   ? "the header is too large"
-                         : status == 505 ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
-                                         : "this is not an HTTP request";
-    HttpResponse response = problemResponse(status, detail);
-    setCommonFields(response);
-    response.closes = true;
-    return response;
 }
 
 } // namespace stipple::server

@@ -3,6 +3,7 @@
 #include "server/net/server.hpp"
 #include "server/net/signals.hpp"
 #include "server/site/cloud_json.hpp"
+#include "server/site/site.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -38,6 +39,38 @@ void printAddress(const Server& server, const Site& site, bool asJson) {
     std::fflush(stdout);
 }
 
+CLI::Option* addSeconds(CLI::App& verb, const std::string& name, std::chrono::milliseconds& limit,
+                        const std::string& help) {
+    return verb
+        .add_option_function<double>(
+            name,
+            [&limit](double seconds) {
+                limit = std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+            },
+            help)
+        ->check(CLI::Range(0.001, 86400.0))
+        ->default_str(std::to_string(limit.count() / 1000));
+}
+
+void addLimitOptions(CLI::App& verb, ServerLimits& limits) {
+    const char* group = "Limits";
+    verb.add_option("--jobs", limits.jobs.working,
+                    "Jobs (exports, pictures) that compute at once; 0: one for each core, 2 to 8")
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--jobs-per-client", limits.jobs.perClient,
+                    "Jobs of one client, waiting or running; more are refused (429)")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str()
+        ->group(group);
+    verb.add_option("--job-queue", limits.jobs.queued, "Jobs that may wait; more are refused (503)")
+        ->check(CLI::Range(1, 100'000))
+        ->capture_default_str()
+        ->group(group);
+    addSeconds(verb, "--job-seconds", limits.jobs.work, "Seconds that a job may compute")->group(group);
+}
+
 } // namespace
 
 void addServingOptions(CLI::App& verb, ServingOptions& options) {
@@ -51,6 +84,7 @@ void addServingOptions(CLI::App& verb, ServingOptions& options) {
     verb.add_option("--grace", options.graceSeconds, "Seconds that downloads may go on after Ctrl-C")
         ->check(CLI::Range(0, 86400))
         ->capture_default_str();
+    addLimitOptions(verb, options.limits);
 }
 
 int serveUntilSignalled(const char* verb, const ServingOptions& options,
@@ -73,6 +107,7 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
     ServerOptions serverOptions;
     serverOptions.host = options.host;
     serverOptions.port = options.port;
+    serverOptions.limits = options.limits;
     StopSignals signals;
     auto server = Server::start(serverOptions, site, log);
     if (!server)

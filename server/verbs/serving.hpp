@@ -1,6 +1,7 @@
 // What `serve` and `view` share: options, start, the line that says where, and the end.
 #pragma once
 
+#include "server/net/server.hpp"
 #include "shared/base/result.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -18,6 +19,7 @@ struct ServingOptions {
     bool asJson = false;
     bool logsRequests = false;
     int graceSeconds = 10;
+    ServerLimits limits;
 };
 
 void addServingOptions(CLI::App& verb, ServingOptions& options);

@@ -11,10 +11,12 @@
 
 namespace stipple::test {
 
-RawClient::RawClient(std::uint16_t port) {
+RawClient::RawClient(std::uint16_t port, const char* from) {
     socket_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    ::inet_pton(AF_INET, from, &address.sin_addr);
+    ::bind(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address);
     address.sin_port = htons(port);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (socket_ >= 0 && ::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
@@ -46,6 +48,7 @@ bool RawClient::fill(int milliseconds) {
         return false;
     char bytes[65536];
     ssize_t got = ::recv(socket_, bytes, sizeof bytes, 0);
+    isReset_ = isReset_ || got < 0;
     if (got <= 0)
         return false;
     buffer_.append(bytes, static_cast<std::size_t>(got));
@@ -74,6 +77,14 @@ RawResponse RawClient::receive(bool hasBody) {
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         response.fields[name] = colon == std::string::npos ? "" : line.substr(colon + 2);
     }
+    if (hasBody && response.fields.count("transfer-encoding") > 0) {
+        receiveChunks(response);
+        return response;
+    }
+    if (hasBody && response.fields.count("content-length") == 0 && response.status == 200) {
+        receiveUntilClose(response);
+        return response;
+    }
     std::size_t length = hasBody ? std::strtoull(response.field("content-length").c_str(), nullptr, 10) : 0;
     while (buffer_.size() < length)
         if (!fill())
@@ -84,12 +95,51 @@ RawResponse RawClient::receive(bool hasBody) {
     return response;
 }
 
+// Strict: the coding is "chunked" alone, sizes have no extensions, and every line ends as it should.
+void RawClient::receiveChunks(RawResponse& response) {
+    if (response.field("transfer-encoding") != "chunked")
+        return;
+    for (;;) {
+        std::size_t end;
+        while ((end = buffer_.find("\r\n")) == std::string::npos)
+            if (!fill())
+                return;
+        std::string digits = buffer_.substr(0, end);
+        if (digits.empty() || digits.find_first_not_of("0123456789abcdef") != std::string::npos)
+            return;
+        std::size_t size = std::strtoull(digits.c_str(), nullptr, 16);
+        while (buffer_.size() < end + 2 + size + 2)
+            if (!fill())
+                return;
+        response.body.append(buffer_, end + 2, size);
+        if (buffer_.compare(end + 2 + size, 2, "\r\n") != 0)
+            return;
+        buffer_.erase(0, end + 2 + size + 2);
+        if (size == 0)
+            break;
+        ++response.chunks;
+    }
+    response.isComplete = true;
+}
+
+void RawClient::receiveUntilClose(RawResponse& response) {
+    while (fill()) {
+    }
+    response.isComplete = !isReset_;
+    response.body.swap(buffer_);
+}
+
 RawResponse RawClient::ask(std::string_view request) {
     std::string bytes;
     for (char c : request)
         bytes += c == '\n' ? std::string("\r\n") : std::string(1, c);
     send(bytes + "\r\n\r\n");
     return receive(!request.starts_with("HEAD "));
+}
+
+const std::string& RawClient::peek() {
+    fill(0);
+    return buffer_;
 }
 
 bool RawClient::isClosedWithin(int milliseconds) {

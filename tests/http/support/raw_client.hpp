@@ -14,8 +14,9 @@ struct RawResponse {
     int status = 0;
     std::string head;                          // status line and fields, as sent, without the empty line
     std::map<std::string, std::string> fields; // names in lower case
-    std::string body;
-    bool isComplete = false; // the whole body came
+    std::string body;                          // decoded, if it came in chunks
+    bool isComplete = false;                   // the whole body came
+    int chunks = 0;                            // of the chunked transfer coding, without the last one
 
     std::string field(const std::string& lowerName) const {
         auto found = fields.find(lowerName);
@@ -25,7 +26,8 @@ struct RawResponse {
 
 class RawClient {
   public:
-    explicit RawClient(std::uint16_t port);
+    // `from`: its own address, one of 127.0.0.0/8.
+    explicit RawClient(std::uint16_t port, const char* from = "127.0.0.1");
     ~RawClient();
     RawClient(const RawClient&) = delete;
     RawClient& operator=(const RawClient&) = delete;
@@ -36,14 +38,19 @@ class RawClient {
     RawResponse receive(bool hasBody = true);
     // send() and receive(); "\n" in `request` stands for "\r\n", and the empty line is added.
     RawResponse ask(std::string_view request);
+    // What has come so far, which receive() will take.
+    const std::string& peek();
     // True if the server closes the connection, with nothing more sent, within `milliseconds`.
     bool isClosedWithin(int milliseconds);
     void setReceiveBuffer(int bytes); // before much was received
     void finishSending();
 
   private:
+    void receiveChunks(RawResponse& response);
+    void receiveUntilClose(RawResponse& response);
     bool fill(int milliseconds = 10'000); // reads more into buffer_; false at the end
     int socket_ = -1;
+    bool isReset_ = false;
     std::string buffer_;
 };
 

@@ -1,5 +1,6 @@
 #include "tests/http/support/test_server.hpp"
 
+#include "server/site/site.hpp"
 #include "shared/format/cloud_writer.hpp"
 
 #include <catch2/catch.hpp>

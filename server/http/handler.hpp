@@ -1,0 +1,23 @@
+// What the server's sockets ask for answers. Knows no socket, as they know no meaning. Thread: any.
+#pragma once
+
+#include "server/http/job.hpp"
+#include "server/http/message.hpp"
+
+#include <cstdint>
+
+namespace stipple::server {
+
+class RequestHandler {
+  public:
+    virtual ~RequestHandler() = default;
+
+    // Never waits for long: what takes longer than a look-up is a Job. A response is complete().
+    virtual Answer answer(const HttpRequest& request, std::int64_t nowSeconds) const = 0;
+
+    // Gives a response that answer() has not seen (a job's, a refusal by the server itself) what every answer
+    // to `request` carries. The request is empty where the client's bytes were none.
+    virtual void complete(const HttpRequest& request, HttpResponse& response) const = 0;
+};
+
+} // namespace stipple::server
