@@ -9,7 +9,7 @@
 namespace stipple::measure {
 namespace {
 
-Status comparable(const DepthPicture& a, const DepthPicture& b) {
+Status comparable(const DepthImage& a, const DepthImage& b) {
     std::size_t pixels = a.image.rgba.size() / 4;
     if (a.image.width != b.image.width || a.image.height != b.image.height ||
         b.image.rgba.size() / 4 != pixels || a.distances.size() != pixels || b.distances.size() != pixels)
@@ -27,7 +27,7 @@ Status comparable(const DepthPicture& a, const DepthPicture& b) {
 
 } // namespace
 
-Result<Comparison> compare(const DepthPicture& reference, const DepthPicture& picture) {
+Result<Comparison> compare(const DepthImage& reference, const DepthImage& picture) {
     STIPPLE_CHECK(comparable(reference, picture));
     Comparison result;
     result.pixels = pixelError(reference.image, picture.image);

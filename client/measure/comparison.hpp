@@ -7,15 +7,7 @@
 #include "client/render/image.hpp"
 #include "shared/base/result.hpp"
 
-#include <vector>
-
 namespace stipple::measure {
-
-// A picture and how far away what it shows is: view distances, rows from the top, 0 where there is no point.
-struct DepthPicture {
-    Image image;
-    std::vector<float> distances;
-};
 
 struct Comparison {
     PixelError pixels;
@@ -26,7 +18,7 @@ struct Comparison {
 };
 
 // Errors: invalidArgument if the sizes differ or a side is shorter than ssimWindow (ssim.hpp).
-Result<Comparison> compare(const DepthPicture& reference, const DepthPicture& picture);
+Result<Comparison> compare(const DepthImage& reference, const DepthImage& picture);
 
 // Mid grey where both are equal, twice the difference of each channel around it.
 Image differencePicture(const Image& reference, const Image& picture);

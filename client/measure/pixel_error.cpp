@@ -23,7 +23,7 @@ PixelError pixelError(const Image& reference, const Image& picture, int toleranc
     }
     auto pixels = static_cast<double>(reference.rgba.size() / 4);
     return {static_cast<double>(sum) / (3 * pixels), std::sqrt(static_cast<double>(squares) / (3 * pixels)),
-            largest, static_cast<double>(differing) / pixels};
+            largest, differing};
 }
 
 } // namespace stipple::measure

@@ -5,15 +5,17 @@
 
 #include "client/render/image.hpp"
 
+#include <cstdint>
+
 namespace stipple::measure {
 
 struct PixelError {
     // UnityPIC §5, eq. 6: the mean over all pixels of |baseline - picture|. There pictures have one channel;
     // here it is the mean of the three, which is the same for grey pictures. Levels; 25.5 are "10 %".
     double mean = 0;
-    double rms = 0;       // levels: root of the mean square, over pixels and channels
-    int largest = 0;      // levels, any channel
-    double differing = 0; // share of the pixels with a channel further apart than `tolerance`
+    double rms = 0;              // levels: root of the mean square, over pixels and channels
+    int largest = 0;             // levels, any channel
+    std::uint64_t differing = 0; // pixels with a channel further apart than `tolerance`
 };
 
 // Both pictures have one size and at least one pixel.

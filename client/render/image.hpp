@@ -11,4 +11,11 @@ struct Image {
     std::vector<std::uint8_t> rgba; // 4 × width × height
 };
 
+// A picture and how far away what it shows is: view distances, rows from top to bottom, 0 where there is no
+// point.
+struct DepthImage {
+    Image image;
+    std::vector<float> distances; // width × height
+};
+
 } // namespace stipple

@@ -10,10 +10,10 @@
 #include "client/headless/egl_context.hpp"
 #include "client/headless/picture.hpp"
 #include "client/headless/png.hpp"
+#include "client/measure/pixel_error.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 #include "tests/golden/scene.hpp"
-#include "tests/support/reference_picture.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -119,14 +119,15 @@ struct Judge {
                      " × ", expected.height));
             return;
         }
-        test::PictureDifference apart = test::difference(actual, expected, levels);
+        measure::PixelError apart = measure::pixelError(expected, actual, levels);
         check(headless::writePng(workPath(cat(backend, ".png")), actual));
-        std::printf("  %s, %s: largest difference %d, mean %.5f, %zu pixels beyond %d levels\n",
-                    scene.name.c_str(), backend, apart.largest, apart.mean, apart.pixels, levels);
-        if (apart.pixels > allowed) {
+        std::printf("  %s, %s: largest difference %d, mean %.5f, %llu pixels beyond %d levels\n",
+                    scene.name.c_str(), backend, apart.largest, apart.mean,
+                    static_cast<unsigned long long>(apart.differing), levels);
+        if (apart.differing > allowed) {
             check(headless::writePng(workPath(cat(backend, ".difference.png")),
                                      differenceImage(actual, expected)));
-            fail(cat(backend, ": ", apart.pixels, " pixels differ by more than ", levels, " levels; ",
+            fail(cat(backend, ": ", apart.differing, " pixels differ by more than ", levels, " levels; ",
                      allowed, " may; see ", workPath(cat(backend, ".difference.png"))));
         }
     }

@@ -8,11 +8,10 @@
 using namespace stipple;
 using namespace stipple::test;
 using measure::compare;
-using measure::DepthPicture;
 
 namespace {
 
-DepthPicture pictureOf(const std::string& name, float distance) {
+DepthImage pictureOf(const std::string& name, float distance) {
     Image image = samplePicture(name);
     std::vector<float> distances(image.rgba.size() / 4, distance);
     return {std::move(image), std::move(distances)};
@@ -21,7 +20,7 @@ DepthPicture pictureOf(const std::string& name, float distance) {
 } // namespace
 
 TEST_CASE("a comparison holds every measure") {
-    DepthPicture base = pictureOf("base", 10), noise = pictureOf("noise", 11);
+    DepthImage base = pictureOf("base", 10), noise = pictureOf("noise", 11);
     auto result = compare(base, noise);
     REQUIRE(result.ok());
     CHECK(result->pixels.mean == measure::pixelError(base.image, noise.image).mean);
@@ -37,11 +36,11 @@ TEST_CASE("a comparison holds every measure") {
 }
 
 TEST_CASE("pictures of different sizes, and ones too small for a window, are refused") {
-    DepthPicture base = pictureOf("base", 10);
-    DepthPicture other{constantPicture({1, 2, 3}, 96, 71), std::vector<float>(96 * 71)};
-    DepthPicture withoutDepth{samplePicture("base"), {}};
-    DepthPicture small{constantPicture({1, 2, 3}, 40, 10), std::vector<float>(400)};
-    DepthPicture nothing;
+    DepthImage base = pictureOf("base", 10);
+    DepthImage other{constantPicture({1, 2, 3}, 96, 71), std::vector<float>(96 * 71)};
+    DepthImage withoutDepth{samplePicture("base"), {}};
+    DepthImage small{constantPicture({1, 2, 3}, 40, 10), std::vector<float>(400)};
+    DepthImage nothing;
     CHECK(compare(base, other).error().code == ErrorCode::invalidArgument);
     CHECK(compare(base, withoutDepth).error().code == ErrorCode::invalidArgument);
     CHECK(compare(small, small).error().code == ErrorCode::invalidArgument);

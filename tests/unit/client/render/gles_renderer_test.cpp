@@ -48,8 +48,8 @@ Style plainStyle(double pixels) {
 void checkAlike(Gles& gles, FramePlan& plan, const char* what) {
     INFO(what);
     Image software = SoftwareRenderer::create(1)->render(plan);
-    PictureDifference apart = difference(gles.draw(plan), software, 2);
-    CHECK(apart.pixels * 2000 <= software.rgba.size() / 4);
+    measure::PixelError apart = measure::pixelError(software, gles.draw(plan), 2);
+    CHECK(apart.differing * 2000 <= software.rgba.size() / 4);
 }
 
 } // namespace

@@ -104,7 +104,7 @@ TEST_CASE("software and GLES draw the same picture", "[gles]") {
     auto gles = GlesRenderer::create();
     REQUIRE(gles.ok());
     auto software = SoftwareRenderer::create(1);
-    PictureDifference worst;
+    measure::PixelError worst;
     std::size_t pixels = 0, beyond = 0;
     double sum = 0;
     for (const Scene& scene : scenes()) {
@@ -112,10 +112,10 @@ TEST_CASE("software and GLES draw the same picture", "[gles]") {
         FramePlan plan = testPlan(scene.nodes, scene.view, scene.style);
         Image a = software->render(plan);
         Image b = glesPicture(*context, **gles, plan);
-        PictureDifference apart = difference(a, b, scene.style.edl.enabled ? 3 : 2);
-        CHECK(apart.pixels * 2000 <= a.rgba.size() / 4);
+        measure::PixelError apart = measure::pixelError(a, b, scene.style.edl.enabled ? 3 : 2);
+        CHECK(apart.differing * 2000 <= a.rgba.size() / 4);
         worst.largest = std::max(worst.largest, apart.largest);
-        beyond += apart.pixels;
+        beyond += apart.differing;
         pixels += a.rgba.size() / 4;
         sum += apart.mean * static_cast<double>(a.rgba.size() / 4);
     }

@@ -1,0 +1,56 @@
+// Marks to a picture. Each pixel is looked at in `samples` × `samples` places, evenly spread; with one, at
+// its centre, as the renderers do. More give the picture that the mean of so many shifted ones would: a
+// pixel's colour is the mean of its samples' levels (a box filter), its distance the nearest of theirs.
+//
+// Memory: 28 bytes a sample.
+#pragma once
+
+#include "client/reference/marks.hpp"
+#include "client/render/image.hpp"
+
+#include <span>
+
+namespace stipple::reference {
+
+// How far a mark might be off, for pictures that are compared pixel by pixel.
+struct Slack {
+    double pixels = 0.01;
+    double distance = 4e-6; // relative: 2^-18, the coarsest depth step of a range of 32 octaves
+};
+
+class Canvas {
+  public:
+    Canvas(int width, int height, int samples = 1);
+
+    static std::uint64_t bytesFor(int width, int height, int samples);
+
+    // Draws marks over what is there; their order of arrival makes no difference. Thread: one at a time.
+    void draw(std::span<const Mark> marks, PointShape shape);
+
+    // Marks the samples that would show another mark if those of `marks` were moved, grew or came nearer by
+    // `slack`. Once all marks are drawn, with all of them; what finish() answers then is in doubt there.
+    void doubt(std::span<const Mark> marks, PointShape shape, const Slack& slack);
+
+    // The picture, with background and eye-dome lighting.
+    DepthImage finish(const Style& style) const;
+    // Per pixel, after doubt(): whether any of its samples is in doubt, or one that lights it.
+    std::vector<bool> doubtful(const Style& style) const;
+
+  private:
+    template <class Visit>
+    void visitSamples(const Mark& mark, PointShape shape, double slack, const Visit& visit) const;
+    template <class Visit>
+    void visitNeighbours(const EyeDomeLighting& edl, int x, int y, const Visit& visit) const;
+    double shadeOf(const EyeDomeLighting& edl, int x, int y) const;
+    std::size_t at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
+    }
+
+    int samples_, columns_, rows_;
+    std::vector<double> distances_; // infinite where there is no mark
+    std::vector<std::uint64_t> orders_;
+    std::vector<Colour> colours_;
+    std::vector<bool> doubtful_; // empty before doubt()
+};
+
+} // namespace stipple::reference

@@ -1,0 +1,118 @@
+#include "client/reference/render_cloud.hpp"
+
+#include "client/reference/node_reader.hpp"
+#include "shared/base/text.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+
+namespace stipple::reference {
+namespace {
+
+// A picture being drawn.
+struct Easel {
+    explicit Easel(const Job& of) : job(of), canvas(of.view.width, of.view.height, of.samples) {}
+    const Job& job;
+    std::mutex mutex; // of the canvas
+    Canvas canvas;
+};
+
+std::vector<int> attributesFor(std::span<const Job> jobs, const CloudMetadata& metadata) {
+    std::set<int> indices;
+    for (const Job& job : jobs)
+        for (std::string_view name : neededAttributes(job.style, metadata))
+            indices.insert(metadata.schema.find(name));
+    return {indices.begin(), indices.end()};
+}
+
+// Reads the cloud once and draws it on every easel. `read` counts points.
+Status drawAll(CloudReader& reader, std::vector<std::unique_ptr<Easel>>& easels,
+               std::span<const int> attributes, int threads, const std::function<void(std::uint64_t)>& read) {
+    const CloudMetadata& metadata = reader.metadata();
+    Points shared;
+    shared.grid = &metadata.grid;
+    shared.colourIs8Bit = metadata.colourIs8Bit;
+    for (int index : attributes)
+        shared.attributes.push_back(metadata.schema.attributes[static_cast<std::size_t>(index)]);
+    return visitPoints(reader, attributes, threads, [&](const PointBatch& batch, std::uint64_t firstOrder) {
+        Points points = shared;
+        points.batch = &batch;
+        points.firstOrder = firstOrder;
+        std::vector<Mark> marks;
+        for (auto& easel : easels) {
+            marks.clear();
+            appendMarks(easel->job.view, easel->job.style, points, marks);
+            std::lock_guard lock(easel->mutex);
+            easel->canvas.draw(marks, easel->job.style.shape);
+        }
+        read(batch.size());
+    });
+}
+
+Status checkJobs(std::span<const Job> jobs) {
+    for (const Job& job : jobs)
+        if (std::min({job.view.width, job.view.height, job.samples}) < 1)
+            return Error{ErrorCode::invalidArgument,
+                         cat("a reference of ", job.view.width, " × ", job.view.height, " pixels with ",
+                             job.samples, " samples can't be drawn"),
+                         "", ""};
+    return {};
+}
+
+// How many of the first jobs are drawn together.
+std::size_t groupSize(std::span<const Job> jobs, std::uint64_t memoryBytes) {
+    std::uint64_t bytes = 0;
+    std::size_t count = 0;
+    for (const Job& job : jobs) {
+        bytes += Canvas::bytesFor(job.view.width, job.view.height, job.samples);
+        if (count > 0 && bytes > memoryBytes)
+            break;
+        ++count;
+    }
+    return count;
+}
+
+std::size_t groupsOf(std::span<const Job> jobs, std::uint64_t memoryBytes) {
+    std::size_t groups = 0;
+    for (; !jobs.empty(); ++groups)
+        jobs = jobs.subspan(groupSize(jobs, memoryBytes));
+    return groups;
+}
+
+} // namespace
+
+Result<std::vector<DepthImage>> renderCloud(ByteSource& source, std::span<const Job> jobs,
+                                            const Options& options) {
+    STIPPLE_CHECK(checkJobs(jobs));
+    STIPPLE_TRY(reader, CloudReader::open(source));
+    int threads = options.threads > 0 ? options.threads
+                                      : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    std::uint64_t total = reader->metadata().pointCount * groupsOf(jobs, options.memoryBytes);
+    std::atomic<std::uint64_t> done{0};
+    std::mutex reporting;
+    auto read = [&](std::uint64_t points) {
+        std::uint64_t now = done += points;
+        std::unique_lock lock(reporting, std::try_to_lock);
+        if (options.progress && lock)
+            options.progress(now, total);
+    };
+
+    std::vector<DepthImage> pictures;
+    while (!jobs.empty()) {
+        std::span<const Job> group = jobs.first(groupSize(jobs, options.memoryBytes));
+        jobs = jobs.subspan(group.size());
+        std::vector<std::unique_ptr<Easel>> easels;
+        for (const Job& job : group)
+            easels.push_back(std::make_unique<Easel>(job));
+        STIPPLE_CHECK(drawAll(*reader, easels, attributesFor(group, reader->metadata()), threads, read));
+        for (const auto& easel : easels)
+            pictures.push_back(easel->canvas.finish(easel->job.style));
+    }
+    return pictures;
+}
+
+} // namespace stipple::reference

@@ -1,0 +1,126 @@
+#include "client/reference/render_cloud.hpp"
+#include "shared/format/cloud_file.hpp"
+#include "shared/io/memory_source.hpp"
+#include "tests/support/small_cloud.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace stipple;
+using namespace stipple::test;
+using reference::Job;
+using reference::renderCloud;
+
+namespace {
+
+const SmallCloud& cloud() {
+    static const SmallCloud made = makeSmallCloud();
+    return made;
+}
+
+Job job(NamedView view = NamedView::iso, ColourMode mode = ColourMode::rgb, int samples = 1) {
+    Job result;
+    BoxD content = cloud().metadata.worldBounds();
+    result.view = reference::viewOf(namedCamera(view, content, 1.5), 120, 80, content);
+    result.style.colourMode = mode;
+    result.style.edl.strength = 0.01;
+    result.style.intensityRange = {0, 65535};
+    result.style.elevationRange = {content.min.z, content.max.z};
+    result.samples = samples;
+    return result;
+}
+
+std::vector<DepthImage> draw(const std::vector<Job>& jobs, const reference::Options& options = {}) {
+    MemorySource source(cloud().file);
+    auto pictures = renderCloud(source, jobs, options);
+    if (!pictures.ok())
+        FAIL(pictures.error().sentence());
+    return std::move(*pictures);
+}
+
+bool same(const DepthImage& a, const DepthImage& b) {
+    return a.image.width == b.image.width && a.image.rgba == b.image.rgba && a.distances == b.distances;
+}
+
+// The same from points read one node after the other, all of them at once.
+DepthImage drawnAtOnce(const Job& of) {
+    MemorySource source(cloud().file);
+    auto reader = CloudReader::open(source);
+    REQUIRE(reader.ok());
+    std::vector<reference::Mark> marks;
+    std::uint64_t order = 0;
+    for (const NodeEntry& entry : cloud().nodes) {
+        auto batch = (*reader)->readNode(entry);
+        REQUIRE(batch.ok());
+        reference::Points points;
+        points.grid = &(*reader)->metadata().grid;
+        points.batch = &*batch;
+        points.attributes = (*reader)->metadata().schema.attributes;
+        points.firstOrder = order;
+        order += batch->size();
+        appendMarks(of.view, of.style, points, marks);
+    }
+    reference::Canvas canvas(of.view.width, of.view.height, of.samples);
+    canvas.draw(marks, of.style.shape);
+    return canvas.finish(of.style);
+}
+
+} // namespace
+
+TEST_CASE("a cloud is drawn with every point, in any colour") {
+    for (ColourMode mode : {ColourMode::rgb, ColourMode::intensity, ColourMode::elevation}) {
+        Job one = job(NamedView::iso, mode);
+        DepthImage picture = draw({one})[0];
+        CHECK(same(picture, drawnAtOnce(one)));
+        CHECK(std::count_if(picture.distances.begin(), picture.distances.end(),
+                            [](float d) { return d > 0; }) > 2000);
+    }
+}
+
+TEST_CASE("threads, and how many pictures are drawn at a time, change nothing") {
+    std::vector<Job> jobs{job(), job(NamedView::top, ColourMode::elevation),
+                          job(NamedView::front, ColourMode::rgb, 2),
+                          job(NamedView::iso, ColourMode::intensity)};
+    std::vector<DepthImage> pictures = draw(jobs, {1, 1ull << 30, {}});
+    REQUIRE(pictures.size() == 4);
+    CHECK_FALSE(same(pictures[0], pictures[3]));
+    for (const reference::Options& options :
+         {reference::Options{3, 1ull << 30, {}}, {2, 1, {}}, {2, 600000, {}}}) {
+        std::vector<DepthImage> again = draw(jobs, options);
+        REQUIRE(again.size() == 4);
+        for (std::size_t i = 0; i < 4; ++i)
+            CHECK(same(again[i], pictures[i]));
+    }
+}
+
+TEST_CASE("progress ends with all points of all readings") {
+    std::uint64_t last = 0, all = 0;
+    reference::Options options{1, 1, [&](std::uint64_t done, std::uint64_t total) {
+                                   CHECK(done > last);
+                                   last = done;
+                                   all = total;
+                               }};
+    draw({job(), job(NamedView::top)}, options);
+    CHECK(last == 2 * cloud().metadata.pointCount);
+    CHECK(all == last);
+}
+
+TEST_CASE("damaged bytes and pictures without pixels are errors") {
+    Job none = job();
+    none.view.width = 0;
+    MemorySource source(cloud().file);
+    CHECK(renderCloud(source, std::vector<Job>{none}).error().code == ErrorCode::invalidArgument);
+    none = job();
+    none.samples = 0;
+    CHECK(renderCloud(source, std::vector<Job>{none}).error().code == ErrorCode::invalidArgument);
+    Bytes damaged = cloud().file;
+    const NodeEntry& node = cloud().nodes[cloud().nodes.size() / 2];
+    damaged[node.offsetBytes + 20] ^= 0x40;
+    MemorySource bad(damaged);
+    for (int threads : {1, 3}) {
+        auto answer = renderCloud(bad, std::vector<Job>{job()}, {threads, 1ull << 30, {}});
+        REQUIRE_FALSE(answer.ok());
+        CHECK(answer.error().code == ErrorCode::corrupt);
+    }
+}
