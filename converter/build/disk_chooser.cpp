@@ -1,6 +1,7 @@
 #include "converter/build/disk_chooser.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace stipple {
 
@@ -10,18 +11,56 @@ namespace {
 constexpr int visitBits = 12;
 constexpr std::uint32_t visitBlock = 1u << visitBits;
 
-constexpr std::uint32_t reversedBits(std::uint32_t value) {
-    std::uint32_t result = 0;
-    for (int i = 0; i < visitBits; ++i)
-        result |= (value >> i & 1u) << (visitBits - 1 - i);
-    return result;
-}
+constexpr auto visitOrder = [] { // bit-reversed
+    std::array<std::uint16_t, visitBlock> order{};
+    for (std::uint32_t value = 0; value < visitBlock; ++value)
+        for (int bit = 0; bit < visitBits; ++bit)
+            order[value] =
+                static_cast<std::uint16_t>(order[value] | (value >> bit & 1u) << (visitBits - 1 - bit));
+    return order;
+}();
+
+// Where a point in a cube could be too near to one beyond the cube's faces.
+class FaceZone {
+  public:
+    // A cube of 2^cubeBits steps; points keep the distance of nodes of 2^nodeBits steps.
+    FaceZone(const Spacing& spacing, int cubeBits, int nodeBits) : last_((std::int64_t{1} << cubeBits) - 1) {
+        const double distance = std::sqrt(spacing.squaredSteps(nodeBits));
+        for (int axis = 0; axis < 3; ++axis) {
+            const double weight = spacing.metric.weights[axis];
+            auto isNear = [&](std::int64_t steps) { // the comparison that sampling makes
+                double side = static_cast<double>(steps) * weight;
+                return side * side < spacing.squaredSteps(nodeBits);
+            };
+            if (weight == 0)
+                continue;
+            // The nearest point a neighbour could have is one step beyond the face.
+            std::int64_t& width = width_[axis];
+            width = static_cast<std::int64_t>(std::min(distance / weight, static_cast<double>(last_)));
+            while (width <= last_ && isNear(width + 1))
+                ++width;
+            while (width > 0 && !isNear(width))
+                --width;
+        }
+    }
+
+    bool holds(Vec3i p) const {
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::min(p[axis], last_ - p[axis]) < width_[axis])
+                return true;
+        return false;
+    }
+
+  private:
+    std::int64_t last_;
+    Vec3i width_; // steps from a face
+};
 } // namespace
 
 DiskChooser::DiskChooser(const Subtree& subtree, const Spacing& spacing,
                          std::span<const Borders* const> neighbours, int workers)
     : subtree_(subtree), spacing_(spacing), neighbours_(neighbours),
-      samplers_(static_cast<std::size_t>(workers)), borders_(subtree.nodes().size()) {
+      thinnings_(static_cast<std::size_t>(workers)), borders_(subtree.nodes().size()) {
     for (std::size_t i = 0; i < subtree.nodes().size(); ++i)
         indexOf_.emplace(subtree.nodes()[i].key, i);
 }
@@ -31,23 +70,27 @@ int DiskChooser::nodeBits(std::size_t node) const {
 }
 
 void DiskChooser::choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) {
-    DiskSampler& sampler = samplers_[static_cast<std::size_t>(worker)];
+    DiskThinning& thinning = thinnings_[static_cast<std::size_t>(worker)];
     int bits = nodeBits(candidates.node);
-    sampler.begin(bits, spacing_.metric.weights, spacing_.squaredSteps(bits));
-    blockNeighbours(subtree_.nodes()[candidates.node].key, sampler);
+    thinning.begin(bits, spacing_.metric.weights, spacing_.squaredSteps(bits), candidates.positions);
+    blockNeighbours(subtree_.nodes()[candidates.node].key, thinning);
+    const FaceZone border(spacing_, bits, bits);
+    std::vector<Vec3i>& borders = borders_[candidates.node];
     auto count = static_cast<std::uint32_t>(candidates.ranks.size());
     for (std::uint32_t block = 0; block < count; block += visitBlock)
-        for (std::uint32_t i = 0; i < visitBlock; ++i) {
-            std::uint32_t at = block + reversedBits(i);
-            if (at >= count)
+        for (std::uint32_t inBlock : visitOrder) {
+            std::uint32_t at = block + inBlock;
+            if (at >= count || !thinning.isFree(at))
                 continue;
-            Vec3<std::uint32_t> p = candidates.positions[at];
-            taken[at] = sampler.accept({p.x, p.y, p.z}) ? 1 : 0;
+            taken[at] = 1;
+            Vec3i p{candidates.positions[at].x, candidates.positions[at].y, candidates.positions[at].z};
+            thinning.exclude(p);
+            if (border.holds(p)) // a neighbour has to know of it
+                borders.push_back(subtree_.position(candidates.ranks[at]));
         }
-    noteBorder(candidates, taken);
 }
 
-void DiskChooser::blockNeighbours(const NodeKey& node, DiskSampler& sampler) const {
+void DiskChooser::blockNeighbours(const NodeKey& node, DiskThinning& thinning) const {
     int bits = subtree_.cube().nodeBits(node.level);
     Vec3i corner = subtree_.cube().nodeMin(node);
     for (int d = 0; d < 27; ++d) {
@@ -58,20 +101,20 @@ void DiskChooser::blockNeighbours(const NodeKey& node, DiskSampler& sampler) con
         if (key == node)
             continue;
         if (auto found = indexOf_.find(key); found != indexOf_.end())
-            block(borders_[found->second], corner, bits, sampler);
+            block(borders_[found->second], corner, bits, thinning);
         // Leaves of this subtree, too, may be roots of others that were sampled before.
         for (const Borders* borders : neighbours_)
             if (auto outside = borders->find(key); outside != borders->end())
-                block(outside->second, corner, bits, sampler);
+                block(outside->second, corner, bits, thinning);
     }
 }
 
 void DiskChooser::block(const std::vector<Vec3i>& borders, Vec3i corner, int bits,
-                        DiskSampler& sampler) const {
+                        DiskThinning& thinning) const {
     double squaredDistance = spacing_.squaredSteps(bits);
     for (Vec3i border : borders)
         if (reaches(border - corner, std::int64_t{1} << bits, squaredDistance))
-            sampler.block(border - corner);
+            thinning.exclude(border - corner);
 }
 
 // Whether `p`, in steps from the node's corner, is within the minimum distance of the node's box on the
@@ -86,42 +129,15 @@ bool DiskChooser::reaches(Vec3i p, std::int64_t side, double squaredDistance) co
     return sum < squaredDistance;
 }
 
-// Keeps the taken points that a neighbour has to know of.
-void DiskChooser::noteBorder(const Candidates& candidates, std::span<const std::uint8_t> taken) {
-    int bits = nodeBits(candidates.node);
-    double squaredDistance = spacing_.squaredSteps(bits);
-    std::int64_t last = (std::int64_t{1} << bits) - 1;
-    for (std::size_t i = 0; i < taken.size(); ++i) {
-        if (taken[i] == 0)
-            continue;
-        Vec3<std::uint32_t> p = candidates.positions[i];
-        if (nearFace({p.x, p.y, p.z}, last, squaredDistance))
-            borders_[candidates.node].push_back(subtree_.position(candidates.ranks[i]));
-    }
-}
-
-// Whether a point beyond a face of a cube of `last` + 1 steps could be too near to `p` in it.
-bool DiskChooser::nearFace(Vec3i p, std::int64_t last, double squaredDistance) const {
-    for (int axis = 0; axis < 3; ++axis) {
-        // To the nearest point a neighbour could have: one step beyond the face.
-        double distance =
-            static_cast<double>(std::min(p[axis], last - p[axis]) + 1) * spacing_.metric.weights[axis];
-        if (distance * distance < squaredDistance && spacing_.metric.weights[axis] > 0)
-            return true;
-    }
-    return false;
-}
-
 // Other subtrees have to know of what lies near the subtree's own faces.
 void DiskChooser::finishLevel(std::size_t begin, std::size_t end) {
     int rootBits = subtree_.cube().nodeBits(subtree_.key().level);
     Vec3i corner = subtree_.cube().nodeMin(subtree_.key());
-    std::int64_t last = (std::int64_t{1} << rootBits) - 1;
     for (std::size_t i = begin; i < end; ++i) {
-        double squaredDistance = spacing_.squaredSteps(nodeBits(i));
+        const FaceZone zone(spacing_, rootBits, nodeBits(i));
         std::vector<Vec3i> outer;
         for (Vec3i border : borders_[i])
-            if (nearFace(border - corner, last, squaredDistance))
+            if (zone.holds(border - corner))
                 outer.push_back(border);
         if (!outer.empty())
             outer_.emplace(subtree_.nodes()[i].key, std::move(outer));

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "converter/build/chooser.hpp"
-#include "converter/build/disk_sampler.hpp"
+#include "converter/build/disk_thinning.hpp"
 
 namespace stipple {
 
@@ -20,16 +20,14 @@ class DiskChooser : public Chooser {
 
   private:
     int nodeBits(std::size_t node) const;
-    void blockNeighbours(const NodeKey& node, DiskSampler& sampler) const;
-    void block(const std::vector<Vec3i>& borders, Vec3i corner, int bits, DiskSampler& sampler) const;
+    void blockNeighbours(const NodeKey& node, DiskThinning& thinning) const;
+    void block(const std::vector<Vec3i>& borders, Vec3i corner, int bits, DiskThinning& thinning) const;
     bool reaches(Vec3i p, std::int64_t side, double squaredDistance) const;
-    bool nearFace(Vec3i p, std::int64_t last, double squaredDistance) const;
-    void noteBorder(const Candidates& candidates, std::span<const std::uint8_t> taken);
 
     const Subtree& subtree_;
     const Spacing& spacing_;
     std::span<const Borders* const> neighbours_;
-    std::vector<DiskSampler> samplers_; // one for each worker
+    std::vector<DiskThinning> thinnings_; // one for each worker
     std::unordered_map<NodeKey, std::size_t, NodeKeyHash> indexOf_;
     std::vector<std::vector<Vec3i>> borders_; // by node: taken points near its faces; of the level at work
     Borders outer_;

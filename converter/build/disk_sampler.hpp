@@ -1,5 +1,6 @@
 // Accepts points one by one, each only if it keeps a minimum distance from all accepted before it
-// (Poisson-disk sampling by dart throwing, R. Cook 1986, over given points).
+// (Poisson-disk sampling by dart throwing, R. Cook 1986, over given points). What DiskThinning samples by is
+// checked by this.
 //
 // Works in one node at a time. Accepted points lie in a grid of cells at least twice the minimum distance
 // wide, so what is too near to a point lies in the eight cells around its nearest corner. All comparisons are
