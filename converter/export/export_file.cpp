@@ -2,16 +2,13 @@
 
 #include "converter/build/output_check.hpp"
 #include "converter/build/parallel.hpp"
-#include "converter/export/csv_sink.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/geojson.hpp"
-#include "converter/export/las_sink.hpp"
-#include "converter/export/ply_sink.hpp"
 #include "converter/export/polygon_crs.hpp"
+#include "converter/export/standard_output.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 
-#include <array>
 #include <filesystem>
 #include <numeric>
 
@@ -19,26 +16,16 @@ namespace stipple {
 
 namespace {
 
-struct FormatRow {
-    ExportFormat format;
-    const char* name;
-    const char* extension;
-    const char* magic; // how such files begin
-};
-constexpr std::array<FormatRow, 4> formats{{{ExportFormat::las, "LAS", "las", "LASF"},
-                                            {ExportFormat::laz, "LAZ", "laz", "LASF"},
-                                            {ExportFormat::ply, "PLY", "ply", "ply"},
-                                            {ExportFormat::csv, "CSV", "csv", "X,Y,Z"}}};
-
-const FormatRow& rowOf(ExportFormat format) {
-    return formats[static_cast<std::size_t>(format)];
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string lower;
-    for (char c : text)
-        lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    return lower;
+// How files of a format begin.
+const char* magicOf(ExportFormat format) {
+    switch (format) {
+    case ExportFormat::ply:
+        return "ply";
+    case ExportFormat::csv:
+        return "X,Y,Z";
+    default:
+        return "LASF";
+    }
 }
 
 bool isStandardOutput(const std::string& output) {
@@ -54,7 +41,7 @@ class Export {
     Result<ExportResult> run() {
         STIPPLE_CHECK(chooseFormat());
         if (!isStandardOutput(output_))
-            STIPPLE_CHECK(checkOutput({input_}, output_, options_.force, rowOf(format_).magic));
+            STIPPLE_CHECK(checkOutput({input_}, output_, options_.force, magicOf(format_)));
         STIPPLE_TRY(source, openFileSource(input_));
         auto opened = CloudReader::open(*source);
         if (!opened)
@@ -76,17 +63,16 @@ class Export {
             format_ = *options_.format;
         } else if (isStandardOutput(output_)) {
             return Error{ErrorCode::invalidArgument, "standard output has no extension to tell the format by",
-                         "", "give --format ply or csv"};
+                         "", "give --format las, ply or csv"};
         } else {
             STIPPLE_TRY(format, exportFormatOf(output_));
             format_ = format;
         }
-        bool streams = format_ == ExportFormat::ply || format_ == ExportFormat::csv;
-        if (isStandardOutput(output_) && !streams)
+        if (isStandardOutput(output_) && needsOverwriting(format_))
             return Error{ErrorCode::invalidArgument,
-                         cat("a ", rowOf(format_).name,
-                             " file can't go to standard output, for its header is written last"),
-                         "", "write to a file, or choose PLY or CSV"};
+                         cat("a ", exportFormatName(format_),
+                             " file can't go to standard output, for its beginning is written last"),
+                         "", "write to a file, or choose LAS, PLY or CSV"};
         return {};
     }
 
@@ -126,20 +112,20 @@ class Export {
     }
 
     Status write(CloudReader& reader, const CloudFilter& filter, const SinkInput& input) {
-        result_.format = rowOf(format_).name;
-        if (format_ == ExportFormat::las || format_ == ExportFormat::laz) {
-            STIPPLE_TRY(sink, LasSink::create(output_, input, filter.reach(), result_.metadata.pointCount,
-                                              format_ == ExportFormat::laz));
-            for (const std::string& warning : sink->warnings())
+        STIPPLE_TRY(plan, planFormat(format_, !isStandardOutput(output_), reader, input_, filter, input,
+                                     walkOptions("count", false)));
+        STIPPLE_TRY(bytes, openOutput());
+        STIPPLE_TRY(to, openFormatSink(plan, std::move(bytes), input));
+        result_.format = exportFormatName(format_);
+        if (to.las)
+            for (const std::string& warning : to.las->warnings())
                 result_.warnings.push_back(warning);
-            STIPPLE_CHECK(walk(reader, filter, input, *sink));
-            const las::Header& header = sink->header();
-            result_.format = cat(rowOf(format_).name, " ", header.versionMajor, ".", header.versionMinor,
-                                 ", point format ", header.pointFormat);
+        STIPPLE_CHECK(walk(reader, filter, input, *to.sink));
+        if (to.las) {
+            const las::Header& header = to.las->header();
+            result_.format = cat(exportFormatName(format_), " ", header.versionMajor, ".",
+                                 header.versionMinor, ", point format ", header.pointFormat);
             result_.grid = header.grid;
-        } else {
-            STIPPLE_TRY(sink, makeStream(reader, filter, input));
-            STIPPLE_CHECK(walk(reader, filter, input, *sink));
         }
         std::error_code none;
         if (!isStandardOutput(output_))
@@ -147,23 +133,10 @@ class Export {
         return {};
     }
 
-    Result<std::unique_ptr<PointSink>> makeStream(CloudReader& reader, const CloudFilter& filter,
-                                                  const SinkInput& input) {
-        std::unique_ptr<ByteSink> bytes;
-        if (isStandardOutput(output_)) {
-            bytes = standardOutputSink();
-        } else {
-            STIPPLE_TRY(file, fileSink(output_));
-            bytes = std::move(file);
-        }
-        if (format_ == ExportFormat::csv)
-            return csvSink(std::move(bytes), input);
-        std::optional<std::uint64_t> count;
-        if (filter.wantsEverything() || !bytes->canOverwrite()) {
-            STIPPLE_TRY(counted, countPoints(reader, input_, filter, walkOptions("count", false)));
-            count = counted;
-        }
-        return plySink(std::move(bytes), input, count);
+    Result<std::unique_ptr<ByteSink>> openOutput() {
+        if (isStandardOutput(output_))
+            return standardOutputSink();
+        return fileSink(output_);
     }
 
     Status walk(CloudReader& reader, const CloudFilter& filter, const SinkInput& input, PointSink& sink) {
@@ -187,17 +160,6 @@ class Export {
 };
 
 } // namespace
-
-const char* exportFormatName(ExportFormat format) {
-    return rowOf(format).name;
-}
-
-std::optional<ExportFormat> exportFormatFromName(std::string_view name) {
-    for (const FormatRow& row : formats)
-        if (lowerCase(name) == row.extension)
-            return row.format;
-    return std::nullopt;
-}
 
 Result<ExportFormat> exportFormatOf(const std::string& output) {
     std::string extension = std::filesystem::path(output).extension().string();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "converter/build/convert.hpp"
+#include "converter/export/format_sink.hpp"
 #include "converter/export/point_filter.hpp"
 #include "converter/export/walk_points.hpp"
 #include "shared/base/result.hpp"
@@ -14,11 +15,6 @@
 
 namespace stipple {
 
-enum class ExportFormat : std::uint8_t { las, laz, ply, csv };
-
-const char* exportFormatName(ExportFormat format); // "LAS", …
-// "las", "LAZ", …; nothing for others.
-std::optional<ExportFormat> exportFormatFromName(std::string_view name);
 // invalidArgument for an extension that is none of the formats', and where there is none.
 Result<ExportFormat> exportFormatOf(const std::string& output);
 
@@ -45,10 +41,11 @@ struct ExportResult {
     std::vector<std::string> warnings; // one sentence each
 };
 
-// Streams the points that pass the filter, node by node. Output "-" is standard output, for PLY and CSV;
-// points that have to be counted first are read twice then. The same cloud and options give the same bytes,
-// for any number of threads. Nothing is left behind on failure; an older file of that name stays as it was.
-// Errors: what the input is at fault for as it is; the output as writeFailed; the options as invalidArgument.
+// Streams the points that pass the filter, node by node. Output "-" is standard output, for all formats but
+// LAZ; points that have to be counted first are read twice then. The same cloud and options give the same
+// bytes, for any number of threads. Nothing is left behind on failure; an older file of that name stays as it
+// was. Errors: what the input is at fault for as it is; the output as writeFailed; the options as
+// invalidArgument.
 Result<ExportResult> exportFile(const std::string& input, const std::string& output,
                                 const ExportOptions& options, const ConvertProgress& progress);
 

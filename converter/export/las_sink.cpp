@@ -132,24 +132,31 @@ bool hasStandardGpsTime(const Schema& schema) {
 
 } // namespace
 
-Result<std::unique_ptr<LasSink>> LasSink::create(const std::string& path, const SinkInput& input,
-                                                 const BoxI& reach, std::uint64_t expectedPoints,
-                                                 bool compressed) {
-    std::unique_ptr<LasSink> sink(new LasSink());
+Result<LasPlan> LasPlan::make(const SinkInput& input, const BoxI& reach, std::uint64_t expectedPoints,
+                              bool compressed) {
+    LasPlan plan;
     STIPPLE_TRY(shift, shiftInto32Bits(reach));
-    sink->shift_ = shift;
-    las::WriterOptions options;
+    plan.shift = shift;
+    las::WriterOptions& options = plan.options;
     options.grid = input.metadata.grid;
     for (int axis = 0; axis < 3; ++axis)
         if (shift[axis] != 0)
             options.grid.offset[axis] = input.metadata.grid.toWorld(shift)[axis];
-    options.schema = namedForLas(input.schema(), sink->warnings_);
+    options.schema = namedForLas(input.schema(), plan.warnings);
     options.pointFormat = choosePointFormat(input, options.schema);
     options.expectedPoints = expectedPoints;
     options.compressed = compressed;
-    options.wkt = wktOf(input.metadata.crs, sink->warnings_);
+    options.wkt = wktOf(input.metadata.crs, plan.warnings);
     options.globalEncoding = hasStandardGpsTime(options.schema) ? 1 : 0;
-    STIPPLE_TRY(writer, las::Writer::create(path, options));
+    return plan;
+}
+
+Result<std::unique_ptr<LasSink>> LasSink::create(std::unique_ptr<ByteSink> to, const LasPlan& plan,
+                                                 std::optional<las::PointSummary> summary) {
+    std::unique_ptr<LasSink> sink(new LasSink());
+    sink->shift_ = plan.shift;
+    sink->warnings_ = plan.warnings;
+    STIPPLE_TRY(writer, las::Writer::create(std::move(to), plan.options, std::move(summary)));
     sink->writer_ = std::move(writer);
     for (const std::string& warning : sink->writer_->warnings())
         sink->warnings_.push_back(warning);

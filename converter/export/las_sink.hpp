@@ -8,29 +8,43 @@
 #pragma once
 
 #include "converter/export/point_sink.hpp"
+#include "shared/io/byte_sink.hpp"
 #include "shared/las/las_header.hpp"
 #include "shared/las/las_writer.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace stipple {
 
-class LasSink final : public PointSink {
-  public:
+// How points become records: decided before any of them is read.
+struct LasPlan {
+    las::WriterOptions options;
+    Vec3i shift; // to be subtracted from the cloud's integers
+    // What could not be written as it is, one sentence each.
+    std::vector<std::string> warnings;
+
     // `reach`: a box in which all points lie (grid integers). `expectedPoints`: at most so many; 0: unknown.
     // outOfRange if the reach is wider than 2^32 steps.
-    static Result<std::unique_ptr<LasSink>> create(const std::string& path, const SinkInput& input,
-                                                   const BoxI& reach, std::uint64_t expectedPoints,
-                                                   bool compressed);
+    static Result<LasPlan> make(const SinkInput& input, const BoxI& reach, std::uint64_t expectedPoints,
+                                bool compressed);
+};
+
+class LasSink final : public PointSink {
+  public:
+    // `summary`: of all points that will come, in the plan's integers (summarizeForLas); needed where `to`
+    // can't be overwritten, which LAZ can't be written to.
+    static Result<std::unique_ptr<LasSink>> create(std::unique_ptr<ByteSink> to, const LasPlan& plan,
+                                                   std::optional<las::PointSummary> summary);
 
     Result<EncodedPoints> encode(PointBatch batch) const override;
     Status write(EncodedPoints points) override;
     Status finish() override;
 
     const las::Header& header() const { return writer_->header(); }
-    // What could not be written as it is, one sentence each.
+    // Those of the plan and of the writer.
     const std::vector<std::string>& warnings() const { return warnings_; }
 
   private:

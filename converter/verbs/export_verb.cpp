@@ -132,7 +132,7 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
         "export", "Write the points of a .stipple file, or some of them, as LAS, LAZ, PLY or CSV");
     verb->add_option("FILE", arguments->input, "The .stipple file")->required();
     verb->add_option("-o,--output", arguments->output,
-                     "The file to write; - is standard output (PLY and CSV, with --format)")
+                     "The file to write; - is standard output (LAS, PLY and CSV, with --format)")
         ->required();
     verb->add_option("--format", arguments->format,
                      "las, laz, ply or csv (default: by the output's extension)");

@@ -12,6 +12,7 @@
 #include "shared/base/result.hpp"
 #include "shared/las/record_layout.hpp"
 
+#include <array>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,8 +32,10 @@ struct ValueRange {
     struct Limits {
         std::uint64_t minBits = 0, maxBits = 0; // u64, i64 or f64 by the kind of the type
         bool known = false;                     // false until a value that is not no-data has been seen
+        friend bool operator==(const Limits&, const Limits&) = default;
     };
-    Limits component[3];
+    std::array<Limits, 3> component;
+    friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 
 // Widens `range` by the values of a column.

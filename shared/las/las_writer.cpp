@@ -1,15 +1,14 @@
 #include "shared/las/las_writer.hpp"
 
 #include "shared/base/text.hpp"
-#include "shared/io/output_file.hpp"
 #include "shared/las/extra_bytes.hpp"
+#include "shared/las/file_shape.hpp"
 #include "shared/las/header_block.hpp"
 #include "shared/las/las_records.hpp"
 #include "shared/las/laz/chunk_writer.hpp"
 #include "shared/las/record_codec.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace stipple::las {
@@ -18,119 +17,15 @@ namespace {
 
 constexpr std::size_t blockBytes = 1024 * 1024; // packed records written at a time
 constexpr std::uint16_t wktBit = 1u << 4;
-constexpr std::size_t maxVlrData = 65535;
-constexpr std::uint64_t maxLegacyCount = std::numeric_limits<std::uint32_t>::max();
 
 Error invalid(std::string what, std::string advice = "") {
     return {ErrorCode::invalidArgument, std::move(what), "", std::move(advice)};
 }
 
-// The type of a LAS attribute, whichever format has it.
-const Attribute* lasAttribute(std::string_view name) {
-    static const std::array<Schema, 2> all{schemaOf(5), schemaOf(10)};
-    for (const Schema& schema : all)
-        if (int index = schema.find(name); index >= 0)
-            return &schema.attributes[static_cast<std::size_t>(index)];
-    return nullptr;
-}
-
-// The lowest format that has most (where possible all) of the schema's LAS attributes.
-int choosePointFormat(const Schema& schema) {
-    int best = 0;
-    std::ptrdiff_t mostHeld = -1;
-    for (int format = 0; format <= 10; ++format) {
-        Schema fields = schemaOf(format);
-        auto held = std::count_if(schema.attributes.begin(), schema.attributes.end(),
-                                  [&](const Attribute& a) { return fields.find(a.name) >= 0; });
-        if (held > mostHeld) {
-            best = format;
-            mostHeld = held;
-        }
-    }
-    return best;
-}
-
-// How the columns of a schema become records.
-struct Plan {
-    RecordLayout layout;
-    std::vector<ColumnField> columns;
-    std::vector<std::size_t> described; // schema indices of the extra bytes that get a descriptor
-};
-
-Result<Plan> planRecords(const Schema& schema, int pointFormat) {
-    Plan plan{baseLayout(pointFormat), {}, {}};
-    // The undescribed remainder is recognised only at the end; elsewhere its bytes get a descriptor.
-    std::size_t tail = schema.attributes.size();
-    while (tail > 0 && isUndescribed(schema.attributes[tail - 1]))
-        --tail;
-    for (std::size_t a = 0; a < schema.attributes.size(); ++a) {
-        const Attribute& attribute = schema.attributes[a];
-        const Attribute* field = lasAttribute(attribute.name);
-        if (field && (field->type != attribute.type || attribute.components != 1))
-            return invalid(cat("LAS stores \"", attribute.name, "\" as one ", attributeTypeName(field->type),
-                               ", but it is ", attribute.components, " × ",
-                               attributeTypeName(attribute.type)),
-                           "give the attribute another name");
-        if (auto place = findField(plan.layout, attribute.name)) {
-            plan.columns.push_back({a, *place});
-            continue;
-        }
-        plan.columns.push_back({a, {a, plan.layout.recordLength, attribute.size(), 0, 0}});
-        plan.layout.recordLength += attribute.size();
-        if (a < tail)
-            plan.described.push_back(a);
-    }
-    if (plan.layout.recordLength > std::numeric_limits<std::uint16_t>::max())
-        return invalid(
-            cat("a point record of ", plan.layout.recordLength, " bytes is longer than LAS allows"));
-    if (plan.described.size() * extraBytesDescriptorSize > maxVlrData)
-        return invalid(cat(plan.described.size(), " extra attributes are more than the ",
-                           maxVlrData / extraBytesDescriptorSize, " that LAS describes"));
-    return plan;
-}
-
-int chooseVersionMinor(const WriterOptions& options, int pointFormat, const Plan& plan) {
-    bool extended = std::any_of(options.vlrs.begin(), options.vlrs.end(),
-                                [](const Vlr& vlr) { return vlr.extended || vlr.data.size() > maxVlrData; });
-    if (!options.wkt.empty() || !plan.described.empty() || extended ||
-        options.expectedPoints > maxLegacyCount)
-        return 4;
-    int minor = 2;
-    while (highestPointFormat(minor) < pointFormat)
-        ++minor;
-    return minor;
-}
-
-Status checkOptions(const WriterOptions& options) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (!(options.grid.scale[axis] > 0) || !std::isfinite(options.grid.scale[axis]) ||
-            !std::isfinite(options.grid.offset[axis]))
-            return invalid(cat("the ", "xyz"[axis], " scale ", options.grid.scale[axis], " and offset ",
-                               options.grid.offset[axis], " make no grid"));
-    if (options.pointFormat < -1 || options.pointFormat > 10)
-        return invalid(cat("point format ", options.pointFormat, " is not one of 0 to 10"));
-    if (options.versionMinor < -1 || options.versionMinor > 4)
-        return invalid(cat("LAS 1.", options.versionMinor, " is not one of 1.0 to 1.4"));
-    for (std::size_t a = 0; a < options.schema.attributes.size(); ++a) {
-        const Attribute& attribute = options.schema.attributes[a];
-        if (attribute.components < 1 || attribute.components > 255)
-            return invalid(cat("\"", attribute.name, "\" has ", attribute.components, " components"));
-        if (options.schema.find(attribute.name) != static_cast<int>(a))
-            return invalid(cat("two attributes are named \"", attribute.name, "\""));
-    }
-    for (const Vlr& vlr : options.vlrs) {
-        if (vlr.is(records::projection, records::wkt) || vlr.is(records::spec, records::extraBytes) ||
-            vlr.is(records::laszip, records::laszipRecord))
-            return invalid(cat("the record ", vlr.userId, " ", vlr.recordId, " is written by itself"));
-        if (vlr.omitted)
-            return invalid(cat("the data of the record ", vlr.userId, " ", vlr.recordId, " were not loaded"));
-    }
-    return {};
-}
-
 class FileWriter final : public Writer {
   public:
-    Status open(const std::string& path, const WriterOptions& options);
+    Status open(std::unique_ptr<ByteSink> to, const WriterOptions& options,
+                std::optional<PointSummary> stated);
 
     Status write(const PointBatch& batch) override;
     Status finish() override;
@@ -140,58 +35,81 @@ class FileWriter final : public Writer {
   private:
     Status placeRecords(const WriterOptions& options);
     void fillHeader(const WriterOptions& options);
-    Result<Bytes> descriptors() const;
+    Result<Bytes> descriptors(const PointSummary& summary) const;
     Status checkBatch(const PointBatch& batch) const;
-    void summarize(const PointBatch& batch);
-    void updateBounds();
-    Result<Bytes> encodeFront();
+    Error tooManyPoints() const;
+    Status writeEvlrs();
+    Status state(const PointSummary& summary);
+    void putIntoHeader(const PointSummary& summary);
+    Result<Bytes> encodeFront(const PointSummary& summary);
     HeaderBlock headerBlock() const;
     static void encodeVlr(ByteWriter& to, const Vlr& vlr, int versionMinor);
 
     Schema schema_;
-    Plan plan_;
+    RecordPlan plan_;
     Header header_;
     std::vector<Vlr> normalVlrs_, extendedVlrs_;
-    std::vector<ValueRange> ranges_; // parallel to plan_.described
-    BoxI box_;
+    SummaryColumns columns_;
+    PointSummary summary_;               // of the points written
+    std::optional<PointSummary> stated_; // of all
     std::uint64_t evlrOffset_ = 0;
     bool failed_ = false, finished_ = false;
     Bytes block_;
     std::vector<std::string> warnings_;
-    std::unique_ptr<OutputFile> file_;
+    std::unique_ptr<ByteSink> to_;
     std::unique_ptr<laz::ChunkWriter> chunks_; // LAZ only
 };
 
-Status FileWriter::open(const std::string& path, const WriterOptions& options) {
-    STIPPLE_CHECK(checkOptions(options));
+Status FileWriter::open(std::unique_ptr<ByteSink> to, const WriterOptions& options,
+                        std::optional<PointSummary> stated) {
+    to_ = std::move(to);
+    stated_ = std::move(stated);
+    if (!to_->canOverwrite() && options.compressed)
+        return invalid(
+            "the place of a LAZ file's chunk table stands before the chunks, so it is written last",
+            "write to a file first, or LAS");
+    if (!to_->canOverwrite() && !stated_)
+        return invalid("the header of a LAS file tells what its points are, and comes before them",
+                       "summarize the points first, or write to a file");
+    STIPPLE_TRY(shape, shapeOf(options));
     schema_ = options.schema;
-    int format = options.pointFormat >= 0 ? options.pointFormat : choosePointFormat(schema_);
-    STIPPLE_TRY(plan, planRecords(schema_, format));
-    plan_ = std::move(plan);
-    ranges_.resize(plan_.described.size());
-    header_.pointFormat = format;
-    header_.versionMinor =
-        options.versionMinor >= 0 ? options.versionMinor : chooseVersionMinor(options, format, plan_);
-    if (highestPointFormat(header_.versionMinor) < format)
-        return invalid(cat("LAS 1.", header_.versionMinor, " has no point format ", format));
+    plan_ = std::move(shape.plan);
+    columns_ = summaryColumns(plan_, schema_, shape.pointFormat);
+    summary_.ranges.resize(plan_.described.size());
+    header_.pointFormat = shape.pointFormat;
+    header_.versionMinor = shape.versionMinor;
     fillHeader(options);
     STIPPLE_CHECK(placeRecords(options));
     for (std::size_t a : plan_.described)
         if (const std::string& name = schema_.attributes[a].name; descriptorName(name) != name)
             warnings_.push_back(cat("the name \"", name, "\" is cut to \"", descriptorName(name),
                                     "\", the 32 bytes LAS has for it"));
-    STIPPLE_TRY(front, encodeFront());
-    if (front.size() > std::numeric_limits<std::uint32_t>::max())
+    STIPPLE_TRY(unknown, encodeFront(summary_));
+    if (unknown.size() > std::numeric_limits<std::uint32_t>::max())
         return invalid("the records before the points are larger than LAS allows");
-    header_.pointDataOffset = static_cast<std::uint32_t>(front.size());
-    STIPPLE_TRY(file, OutputFile::create(path));
-    file_ = std::move(file);
-    STIPPLE_CHECK(file_->append(front));
+    header_.pointDataOffset = static_cast<std::uint32_t>(unknown.size());
+    if (stated_)
+        STIPPLE_CHECK(state(*stated_));
+    STIPPLE_TRY(front, encodeFront(stated_.value_or(summary_)));
+    STIPPLE_CHECK(to_->append(front));
     if (!header_.compressed)
         return {};
-    STIPPLE_TRY(chunks, laz::ChunkWriter::create(*file_, laz::laszipRecordFor(format, header_.recordLength)));
+    STIPPLE_TRY(chunks, laz::ChunkWriter::create(
+                            *to_, laz::laszipRecordFor(header_.pointFormat, header_.recordLength)));
     chunks_ = std::move(chunks);
     return chunks_->begin();
+}
+
+// What the header says has to be true at the end.
+Status FileWriter::state(const PointSummary& summary) {
+    if (summary.ranges.size() != plan_.described.size())
+        return invalid(cat("the summary has ranges of ", summary.ranges.size(),
+                           " extra attributes instead of ", plan_.described.size()));
+    if (header_.versionMinor < 4 && summary.pointCount > maxLegacyCount)
+        return tooManyPoints();
+    if (!extendedVlrs_.empty() && !header_.compressed)
+        evlrOffset_ = header_.pointDataOffset + summary.pointCount * header_.recordLength;
+    return {};
 }
 
 void FileWriter::fillHeader(const WriterOptions& options) {
@@ -208,7 +126,7 @@ void FileWriter::fillHeader(const WriterOptions& options) {
     header_.creationYear = options.creationYear;
     header_.headerSize = static_cast<std::uint16_t>(headerBlockSize(header_.versionMinor));
     header_.grid = options.grid;
-    updateBounds();
+    putIntoHeader(summary_);
 }
 
 Status FileWriter::placeRecords(const WriterOptions& options) {
@@ -236,10 +154,10 @@ Status FileWriter::placeRecords(const WriterOptions& options) {
     return {};
 }
 
-Result<Bytes> FileWriter::descriptors() const {
+Result<Bytes> FileWriter::descriptors(const PointSummary& summary) const {
     Bytes all;
     for (std::size_t i = 0; i < plan_.described.size(); ++i) {
-        STIPPLE_TRY(one, encodeDescriptor(schema_.attributes[plan_.described[i]], ranges_[i]));
+        STIPPLE_TRY(one, encodeDescriptor(schema_.attributes[plan_.described[i]], summary.ranges[i]));
         all.insert(all.end(), one.begin(), one.end());
     }
     return all;
@@ -292,13 +210,14 @@ HeaderBlock FileWriter::headerBlock() const {
 }
 
 // Everything before the points; of the same size each time.
-Result<Bytes> FileWriter::encodeFront() {
+Result<Bytes> FileWriter::encodeFront(const PointSummary& summary) {
+    putIntoHeader(summary);
     ByteWriter front;
     front.writeBytes(encodeHeaderBlock(headerBlock()));
     for (const Vlr& vlr : normalVlrs_)
         encodeVlr(front, vlr, header_.versionMinor);
     if (!plan_.described.empty()) {
-        STIPPLE_TRY(described, descriptors());
+        STIPPLE_TRY(described, descriptors(summary));
         encodeVlr(
             front,
             {std::string(records::spec), records::extraBytes, "Extra Bytes Record", std::move(described)},
@@ -319,11 +238,15 @@ Status FileWriter::checkBatch(const PointBatch& batch) const {
         if (batch.columns[a].size() != batch.size() * schema_.attributes[a].size())
             return invalid(cat("the column \"", schema_.attributes[a].name, "\" has ",
                                batch.columns[a].size(), " bytes for ", batch.size(), " points"));
-    if (header_.versionMinor < 4 && batch.size() > maxLegacyCount - header_.pointCount)
-        return Error{ErrorCode::limitExceeded,
-                     cat("LAS 1.", header_.versionMinor, " holds at most ", maxLegacyCount, " points"),
-                     file_->path(), "write LAS 1.4"};
+    if (header_.versionMinor < 4 && batch.size() > maxLegacyCount - summary_.pointCount)
+        return tooManyPoints();
     return {};
+}
+
+Error FileWriter::tooManyPoints() const {
+    return {ErrorCode::limitExceeded,
+            cat("LAS 1.", header_.versionMinor, " holds at most ", maxLegacyCount, " points"), to_->name(),
+            "write LAS 1.4"};
 }
 
 Status FileWriter::write(const PointBatch& batch) {
@@ -336,42 +259,37 @@ Status FileWriter::write(const PointBatch& batch) {
         std::size_t count = std::min(pointsPerBlock, batch.size() - done);
         Status packed = packRecords(plan_.layout, plan_.columns, schema_, batch, done, count, block_.data());
         if (!packed.ok())
-            return packed.error().at(file_->path());
+            return packed.error().at(to_->name());
         ByteSpan records(block_.data(), count * stride);
-        STIPPLE_CHECK(chunks_ ? chunks_->write(records) : file_->append(records));
+        STIPPLE_CHECK(chunks_ ? chunks_->write(records) : to_->append(records));
     }
-    summarize(batch);
+    addToSummary(summary_, columns_, schema_, batch);
+    putIntoHeader(summary_);
     failed_ = false;
     return {};
 }
 
-void FileWriter::summarize(const PointBatch& batch) {
-    for (Vec3i p : batch.positions)
-        box_.extend(p);
-    updateBounds();
-    header_.pointCount += batch.size();
-    if (int a = schema_.find(attribute_names::returnNumber); a >= 0) {
-        std::array<std::uint64_t, 256> counts{};
-        for (std::uint8_t number : batch.columns[static_cast<std::size_t>(a)])
-            ++counts[number];
-        std::size_t returns = header_.pointFormat >= 6 ? 15 : 5; // legacy counts have five places
-        for (std::size_t i = 0; i < returns; ++i)
-            header_.pointsByReturn[i] += counts[i + 1];
-    }
-    for (std::size_t i = 0; i < ranges_.size(); ++i) {
-        std::size_t a = plan_.described[i];
-        extendRange(ranges_[i], schema_.attributes[a], batch.columns[a]);
-    }
-}
-
-void FileWriter::updateBounds() {
+void FileWriter::putIntoHeader(const PointSummary& summary) {
+    header_.pointCount = summary.pointCount;
+    header_.pointsByReturn = summary.pointsByReturn;
     header_.bounds = {};
-    if (box_.empty()) {
+    if (summary.bounds.empty()) {
         header_.bounds.min = header_.bounds.max = {0, 0, 0};
         return;
     }
-    header_.bounds.extend(header_.grid.toWorld(box_.min));
-    header_.bounds.extend(header_.grid.toWorld(box_.max));
+    header_.bounds.extend(header_.grid.toWorld(summary.bounds.min));
+    header_.bounds.extend(header_.grid.toWorld(summary.bounds.max));
+}
+
+Status FileWriter::writeEvlrs() {
+    if (!extendedVlrs_.empty())
+        evlrOffset_ = to_->sizeBytes();
+    for (const Vlr& vlr : extendedVlrs_) {
+        ByteWriter record;
+        encodeVlr(record, vlr, header_.versionMinor);
+        STIPPLE_CHECK(to_->append(record.bytes()));
+    }
+    return {};
 }
 
 Status FileWriter::finish() {
@@ -380,24 +298,41 @@ Status FileWriter::finish() {
     finished_ = true;
     if (chunks_)
         STIPPLE_CHECK(chunks_->finish());
-    if (!extendedVlrs_.empty())
-        evlrOffset_ = file_->sizeBytes();
-    for (const Vlr& vlr : extendedVlrs_) {
-        ByteWriter record;
-        encodeVlr(record, vlr, header_.versionMinor);
-        STIPPLE_CHECK(file_->append(record.bytes()));
+    STIPPLE_CHECK(writeEvlrs());
+    if (stated_ && summary_ != *stated_ && !to_->canOverwrite())
+        return Error{ErrorCode::corrupt,
+                     cat("other points came than were stated (", summary_.pointCount, " instead of ",
+                         stated_->pointCount, ")"),
+                     to_->name(), "the cloud contradicts itself; convert the scan again"};
+    if (to_->canOverwrite()) {
+        STIPPLE_TRY(front, encodeFront(summary_));
+        STIPPLE_CHECK(to_->overwrite(0, front));
     }
-    STIPPLE_TRY(front, encodeFront());
-    STIPPLE_CHECK(file_->overwrite(0, front));
-    return file_->commit();
+    return to_->finish();
 }
 
 } // namespace
 
+Result<SummaryColumns> summaryColumnsFor(const WriterOptions& options) {
+    STIPPLE_TRY(shape, shapeOf(options));
+    return summaryColumns(shape.plan, options.schema, shape.pointFormat);
+}
+
 Result<std::unique_ptr<Writer>> Writer::create(const std::string& path, const WriterOptions& options) {
+    // Before a file is made that would have to go again.
+    if (auto shape = shapeOf(options); !shape)
+        return shape.error().at(path);
+    STIPPLE_TRY(file, fileSink(path));
+    return create(std::move(file), options);
+}
+
+Result<std::unique_ptr<Writer>> Writer::create(std::unique_ptr<ByteSink> to, const WriterOptions& options,
+                                               std::optional<PointSummary> stated) {
+    std::string name = to->name();
     auto writer = std::make_unique<FileWriter>();
-    if (Status opened = writer->open(path, options); !opened.ok())
-        return opened.error().where == path ? opened.error() : opened.error().at(path);
+    Status opened = writer->open(std::move(to), options, std::move(stated));
+    if (!opened.ok())
+        return name.empty() || opened.error().where == name ? opened.error() : opened.error().at(name);
     return std::unique_ptr<Writer>(std::move(writer));
 }
 

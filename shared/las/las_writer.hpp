@@ -1,16 +1,20 @@
 // Writes LAS and LAZ files: point formats 0-10, LAS 1.0-1.4. The output gets its name only when finish()
-// succeeds.
+// succeeds. LAS also goes where bytes can't be written again, such as the body of an HTTP answer, if what its
+// header says of the points is known before.
 //
 // Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB); for LAZ also the
 // compressed bytes of a chunk of 50,000 points, and its models (about 2 MB).
 #pragma once
 
 #include "shared/base/result.hpp"
+#include "shared/io/byte_sink.hpp"
 #include "shared/las/las_header.hpp"
 #include "shared/las/las_reader.hpp"
+#include "shared/las/point_summary.hpp"
 #include "shared/points/point_batch.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,17 +47,27 @@ struct WriterOptions {
 // compressed if it is. Records whose data were left in the file (Vlr::omitted) are not among them.
 WriterOptions optionsLike(const Reader& reader);
 
+// What a summary of the points that such options write is made of: columns of options.schema. Errors: those
+// of Writer::create.
+Result<SummaryColumns> summaryColumnsFor(const WriterOptions& options);
+
 class Writer {
   public:
     // Errors: outputs that can't be made (writeFailed); options that contradict themselves or LAS, such as an
     // "Intensity" that is no uint16 (invalidArgument).
     static Result<std::unique_ptr<Writer>> create(const std::string& path, const WriterOptions& options);
+    // `stated`: of all points that will come. Where `to` can't be overwritten it is needed, and LAZ is
+    // refused, for the place of its chunk table stands before the chunks (invalidArgument). The bytes are
+    // those of a file.
+    static Result<std::unique_ptr<Writer>> create(std::unique_ptr<ByteSink> to, const WriterOptions& options,
+                                                  std::optional<PointSummary> stated = std::nullopt);
     virtual ~Writer() = default; // without finish(): removes the temporary file
 
     // Appends points. outOfRange if an integer does not fit 32 bits or a value its field
     // (e.g. return number 9 in format 1). After an error the file can't be finished.
     virtual Status write(const PointBatch& batch) = 0;
-    // Writes counts, bounds and EVLRs, closes and renames.
+    // Writes counts, bounds and EVLRs, closes and renames. corrupt if the points are not those that were
+    // stated where that has gone out already.
     virtual Status finish() = 0;
     // Counts and bounds are those of the points written so far.
     virtual const Header& header() const = 0;

@@ -9,14 +9,13 @@
 
 namespace stipple::las::laz {
 
-ChunkWriter::ChunkWriter(OutputFile& file, const LaszipRecord& record)
-    : file_(file), chunkSize_(record.chunkSize) {
+ChunkWriter::ChunkWriter(ByteSink& to, const LaszipRecord& record) : to_(to), chunkSize_(record.chunkSize) {
     for (const Item& item : record.items)
         recordLength_ += item.sizeBytes;
 }
 
-Result<std::unique_ptr<ChunkWriter>> ChunkWriter::create(OutputFile& file, const LaszipRecord& record) {
-    std::unique_ptr<ChunkWriter> writer(new ChunkWriter(file, record));
+Result<std::unique_ptr<ChunkWriter>> ChunkWriter::create(ByteSink& to, const LaszipRecord& record) {
+    std::unique_ptr<ChunkWriter> writer(new ChunkWriter(to, record));
     if (record.compressor == Compressor::layeredChunked) {
         STIPPLE_TRY(encoder, makeLayeredEncoder(record.items));
         writer->encoder_ = std::move(encoder);
@@ -27,10 +26,10 @@ Result<std::unique_ptr<ChunkWriter>> ChunkWriter::create(OutputFile& file, const
 }
 
 Status ChunkWriter::begin() {
-    beginOffset_ = file_.sizeBytes();
+    beginOffset_ = to_.sizeBytes();
     ByteWriter place;
     place.write(std::int64_t{-1}); // not known yet: what a file that is never finished says
-    return file_.append(place.bytes());
+    return to_.append(place.bytes());
 }
 
 Status ChunkWriter::write(ByteSpan records) {
@@ -52,20 +51,20 @@ Status ChunkWriter::finishChunk() {
     ByteSpan bytes = encoder_->finish();
     if (bytes.size() > std::numeric_limits<std::uint32_t>::max() ||
         chunks_.size() == std::numeric_limits<std::uint32_t>::max())
-        return Error{ErrorCode::limitExceeded, "LAZ counts chunks and their bytes in 32 bits", file_.path(),
+        return Error{ErrorCode::limitExceeded, "LAZ counts chunks and their bytes in 32 bits", to_.name(),
                      ""};
     chunks_.push_back({pointsInChunk_, static_cast<std::uint32_t>(bytes.size())});
     pointsInChunk_ = 0;
-    return file_.append(bytes);
+    return to_.append(bytes);
 }
 
 Status ChunkWriter::finish() {
     if (pointsInChunk_ > 0)
         STIPPLE_CHECK(finishChunk());
     ByteWriter offset;
-    offset.write(file_.sizeBytes());
-    STIPPLE_CHECK(file_.append(encodeChunkTable(chunks_, false)));
-    return file_.overwrite(beginOffset_, offset.bytes());
+    offset.write(to_.sizeBytes());
+    STIPPLE_CHECK(to_.append(encodeChunkTable(chunks_, false)));
+    return to_.overwrite(beginOffset_, offset.bytes());
 }
 
 } // namespace stipple::las::laz

@@ -3,7 +3,7 @@
 // Memory: the compressed bytes of the chunk that is being written, and about 2 MB of models.
 #pragma once
 
-#include "shared/io/output_file.hpp"
+#include "shared/io/byte_sink.hpp"
 #include "shared/las/laz/chunk_table.hpp"
 #include "shared/las/laz/laszip_record.hpp"
 
@@ -11,9 +11,9 @@ namespace stipple::las::laz {
 
 class ChunkWriter {
   public:
-    // For files whose record (laszipRecordFor) says chunks of a fixed number of points. `file` must outlive
-    // the writer. Errors: unsupported items.
-    static Result<std::unique_ptr<ChunkWriter>> create(OutputFile& file, const LaszipRecord& record);
+    // For files whose record (laszipRecordFor) says chunks of a fixed number of points. `to` can be
+    // overwritten and outlives the writer. Errors: unsupported items.
+    static Result<std::unique_ptr<ChunkWriter>> create(ByteSink& to, const LaszipRecord& record);
 
     // Called once, where the points begin.
     Status begin();
@@ -23,10 +23,10 @@ class ChunkWriter {
     Status finish();
 
   private:
-    ChunkWriter(OutputFile& file, const LaszipRecord& record);
+    ChunkWriter(ByteSink& to, const LaszipRecord& record);
     Status finishChunk();
 
-    OutputFile& file_;
+    ByteSink& to_;
     std::unique_ptr<ChunkEncoder> encoder_;
     std::size_t recordLength_ = 0;
     std::uint32_t chunkSize_ = 0, pointsInChunk_ = 0;

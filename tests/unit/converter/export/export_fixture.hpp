@@ -89,6 +89,24 @@ struct SmallCloudFile {
     explicit SmallCloudFile(const SmallCloudOptions& options = {});
 };
 
+// Bytes on their way to someone: they can't be written again.
+class LeavingSink final : public ByteSink {
+  public:
+    LeavingSink(std::string& body, bool& finished) : body_(body), finished_(finished) {}
+    Status finish() override {
+        finished_ = true;
+        return {};
+    }
+
+  private:
+    Status put(ByteSpan bytes) override {
+        body_.append(bytes.begin(), bytes.end());
+        return {};
+    }
+    std::string& body_;
+    bool& finished_;
+};
+
 ExportResult exportOrFail(const std::string& input, const std::string& output,
                           const ExportOptions& options = {});
 std::string textOf(const std::string& path);

@@ -174,9 +174,11 @@ TEST_CASE("outputs that can't be are refused, and nothing is written") {
     ExportOptions asLas;
     asLas.format = ExportFormat::las;
     CHECK(errorOf("-").sentence() ==
-          "standard output has no extension to tell the format by (give --format ply or csv)");
-    CHECK(errorOf("-", asLas).what ==
-          "a LAS file can't go to standard output, for its header is written last");
+          "standard output has no extension to tell the format by (give --format las, ply or csv)");
+    ExportOptions asLaz;
+    asLaz.format = ExportFormat::laz;
+    CHECK(errorOf("-", asLaz).what ==
+          "a LAZ file can't go to standard output, for its beginning is written last");
     CHECK(errorOf(file.path, asLas).what == "the output is one of the inputs");
     asLas.force = true;
     CHECK(errorOf(file.path, asLas).what == "the output is one of the inputs");

@@ -9,24 +9,6 @@ using namespace stipple::test;
 
 namespace {
 
-// Bytes on their way to someone: they can't be written again.
-class BodySink final : public ByteSink {
-  public:
-    explicit BodySink(std::string& body, bool& finished) : body_(body), finished_(finished) {}
-    Status append(ByteSpan bytes) override {
-        body_.append(bytes.begin(), bytes.end());
-        return {};
-    }
-    Status finish() override {
-        finished_ = true;
-        return {};
-    }
-
-  private:
-    std::string& body_;
-    bool& finished_;
-};
-
 struct OpenCloud {
     SmallCloud cloud = makeSmallCloud();
     MemorySource source{cloud.file};
@@ -34,7 +16,7 @@ struct OpenCloud {
     std::string body;
     bool finished = false;
 
-    std::unique_ptr<ByteSink> sink() { return std::make_unique<BodySink>(body, finished); }
+    std::unique_ptr<ByteSink> sink() { return std::make_unique<LeavingSink>(body, finished); }
 };
 
 } // namespace
@@ -82,13 +64,13 @@ TEST_CASE_METHOD(OpenCloud, "counting reads no node that is wholly wanted") {
 TEST_CASE_METHOD(OpenCloud, "an error of the sink ends the walk") {
     class FullSink final : public ByteSink {
       public:
-        Status append(ByteSpan bytes) override {
-            room_ -= static_cast<std::ptrdiff_t>(bytes.size());
-            return room_ >= 0 ? Status() : Status(Error{ErrorCode::writeFailed, "the disk is full", "", ""});
-        }
         Status finish() override { return {}; }
 
       private:
+        Status put(ByteSpan bytes) override {
+            room_ -= static_cast<std::ptrdiff_t>(bytes.size());
+            return room_ >= 0 ? Status() : Status(Error{ErrorCode::writeFailed, "the disk is full", "", ""});
+        }
         std::ptrdiff_t room_ = 50000;
     };
     CloudFilter filter = need(CloudFilter::make(reader->metadata(), {}));
