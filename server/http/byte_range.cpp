@@ -83,12 +83,14 @@ ResolvedRanges meaningless(std::uint64_t sizeBytes) {
 } // namespace
 
 ResolvedRanges resolveRanges(std::string_view field, std::uint64_t sizeBytes) {
-    std::size_t equals = field.find('=');
-    // Units are compared without case (RFC 9110 §14.1); one that is not known is ignored.
-    if (field.empty() || !equalIgnoringCase(trimmed(field.substr(0, equals)), "bytes"))
+    if (field.empty())
         return {};
-    if (equals == std::string_view::npos)
+    std::size_t equals = field.find('=');
+    if (equals == std::string_view::npos) // "bytes 0-9": no unit at all
         return meaningless(sizeBytes);
+    // Units are compared without case (RFC 9110 §14.1); one that is not known is ignored.
+    if (!equalIgnoringCase(trimmed(field.substr(0, equals)), "bytes"))
+        return {};
 
     ResolvedRanges resolved{RangeAnswerKind::parts, {}};
     std::size_t count = 0;

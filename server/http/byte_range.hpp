@@ -19,7 +19,7 @@ inline constexpr std::uint64_t rangeMergeGapBytes = 128;
 inline constexpr std::uint64_t ignoreBadRangeUpToBytes = 1 << 20;
 
 enum class RangeAnswerKind {
-    whole,         // no Range, another unit, or a meaningless one on a small file: 200
+    whole,         // no Range, another unit, or a meaningless range on a small file: 200
     parts,         // 206; at least one part
     unsatisfiable, // 416: nothing of the file lies in the ranges
     refused,       // 416: malformed, or more than maxRangesInRequest
