@@ -24,6 +24,8 @@ void setValidatorFields(HttpResponse& response, const Representation& representa
         response.set("Last-Modified", httpDate(representation.validators.lastModifiedSeconds));
     response.set("Cache-Control", representation.cacheControl);
     response.set("Accept-Ranges", "bytes");
+    if (!representation.vary.empty())
+        response.set("Vary", representation.vary);
 }
 
 HttpResponse problemWithValidators(int status, const std::string& detail,
@@ -39,14 +41,16 @@ HttpResponse problemWithValidators(int status, const std::string& detail,
 // and depends on the version.
 void setMultipartBody(HttpResponse& response, const Representation& representation,
                       const std::vector<ByteRange>& parts) {
-    std::uint64_t hash = 0xCBF29CE484222325ull;
-    for (char c : representation.validators.etag)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3ull;
-    std::string boundary = cat("stipple-part-", hash);
+    std::string tag = tagOfText(representation.validators.etag); // "hash-size", in quotes
+    std::string boundary = cat("stipple-part-", tag.substr(1, 16));
+    // The coding is that of the parts: the multipart body around them is not coded.
+    std::string fields = cat("\r\nContent-Type: ", representation.contentType);
+    if (!representation.contentCoding.empty())
+        fields += cat("\r\nContent-Encoding: ", representation.contentCoding);
     for (const ByteRange& part : parts) {
-        response.body.push_back(cat(response.body.empty() ? "" : "\r\n", "--", boundary,
-                                    "\r\nContent-Type: ", representation.contentType, "\r\nContent-Range: ",
-                                    contentRange(part, representation.sizeBytes()), "\r\n\r\n"));
+        response.body.push_back(cat(response.body.empty() ? "" : "\r\n", "--", boundary, fields,
+                                    "\r\nContent-Range: ", contentRange(part, representation.sizeBytes()),
+                                    "\r\n\r\n"));
         response.body.push_back(sliceOf(representation, part));
     }
     response.body.push_back(cat("\r\n--", boundary, "--\r\n"));
@@ -105,6 +109,8 @@ HttpResponse answerRepresentation(const HttpRequest& request, const Representati
     HttpResponse response;
     setValidatorFields(response, representation);
     response.set("Content-Type", representation.contentType);
+    if (ranges.parts.size() <= 1 && !representation.contentCoding.empty())
+        response.set("Content-Encoding", representation.contentCoding);
     if (ranges.kind == RangeAnswerKind::whole) {
         response.body.push_back(sliceOf(representation, {0, sizeBytes}));
         return response;

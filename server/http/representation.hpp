@@ -17,6 +17,8 @@ struct Representation {
     std::string contentType;
     std::string cacheControl;
     Validators validators;
+    std::string contentCoding = {}; // "br"; empty: none. Size and ranges are of the coded bytes (§14.1.2)
+    std::string vary = {};          // field names by which another one might have been chosen; empty: none
 
     static Representation ofText(std::string text, std::string contentType, std::string cacheControl);
     static Representation ofFile(std::shared_ptr<const OpenFile> file, std::string contentType,
