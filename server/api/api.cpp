@@ -54,7 +54,7 @@ bool isApiPath(const Target& target) {
 }
 
 Answer answerApi(const HttpRequest& request, const Target& target, const CloudCatalog& catalog,
-                 std::int64_t nowSeconds) {
+                 const Visitor& visitor, std::int64_t nowSeconds) {
     std::vector<std::string> names;
     auto segments = std::span(target.segments).subspan(prefixSegments);
     auto endpoint = std::find_if(endpoints().begin(), endpoints().end(), [&](const Endpoint& candidate) {
@@ -68,7 +68,7 @@ Answer answerApi(const HttpRequest& request, const Target& target, const CloudCa
     if (Status known = checkNames(*query, endpoint->parameters); !known)
         return unknownParameterProblem(known.error());
 
-    ApiCall call{request, *query, std::move(names), "", nullptr, nowSeconds, catalog};
+    ApiCall call{request, *query, std::move(names), "", nullptr, nowSeconds, catalog, visitor};
     if (endpoint->path.starts_with("/clouds/{id}")) {
         call.id = call.names.front();
         auto cloud = catalog.current(call.id);

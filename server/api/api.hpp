@@ -12,9 +12,10 @@ namespace stipple::server {
 // Is it a path of the API?
 bool isApiPath(const Target& target);
 
-// Answers a GET or HEAD whose target isApiPath(). Whether the client may see the cloud is settled before.
+// Answers a GET or HEAD whose target isApiPath(). Whether the visitor may read the target's cloud is settled
+// before.
 Answer answerApi(const HttpRequest& request, const Target& target, const CloudCatalog& catalog,
-                 std::int64_t nowSeconds);
+                 const Visitor& visitor, std::int64_t nowSeconds);
 
 std::span<const Endpoint> endpoints();
 

@@ -2,6 +2,7 @@
 // answer. One table of these (endpoints.cpp) routes requests and is what /api/v1/openapi.json says.
 #pragma once
 
+#include "server/access/visitor.hpp"
 #include "server/api/parameter.hpp"
 #include "server/http/job.hpp"
 #include "server/http/message.hpp"
@@ -27,6 +28,7 @@ struct ApiCall {
     std::shared_ptr<const CloudVersion> cloud;
     std::int64_t nowSeconds = 0; // since 1970
     const CloudCatalog& catalog;
+    const Visitor& visitor; // who asks; may read `cloud`
 };
 
 struct Endpoint {

@@ -75,6 +75,10 @@ void CloudCatalog::add(const std::string& path, std::shared_ptr<const CloudVersi
     entries_.push_back(std::move(entry));
 }
 
+bool CloudCatalog::holds(std::string_view id) const {
+    return std::find(ids_.begin(), ids_.end(), id) != ids_.end();
+}
+
 Result<std::shared_ptr<const CloudVersion>> CloudCatalog::current(std::string_view id) const {
     auto found = std::find(ids_.begin(), ids_.end(), id);
     if (found == ids_.end())

@@ -27,6 +27,9 @@ class CloudCatalog {
     // "-" become "-"; a second cloud of the same id gets "-2" added.
     const std::vector<std::string>& ids() const { return ids_; }
 
+    // Whether there is a cloud of this id, without looking into its file.
+    bool holds(std::string_view id) const;
+
     // Errors: notFound (no such id, or the file is gone); truncated, corrupt or unsupported (what is there
     // now is no cloud); limitExceeded, ioFailed.
     Result<std::shared_ptr<const CloudVersion>> current(std::string_view id) const;

@@ -1,7 +1,6 @@
 #include "server/site/cloud_json.hpp"
 
-#include "server/http/target.hpp"
-#include "shared/base/text.hpp"
+#include "server/site/cloud_address.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -35,10 +34,6 @@ Json summary(const NamedCloud& cloud) {
 }
 
 } // namespace
-
-std::string cloudAddress(const std::string& id) {
-    return cat("/clouds/", percentEncoded(id), ".stipple");
-}
 
 std::string cloudListJson(const std::vector<NamedCloud>& clouds) {
     Json list = Json::array();

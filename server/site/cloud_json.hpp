@@ -11,9 +11,6 @@ namespace stipple::server {
 
 using NamedCloud = std::pair<std::string, std::shared_ptr<const CloudVersion>>; // id, version
 
-// "/clouds/ID.stipple"
-std::string cloudAddress(const std::string& id);
-
 // {"clouds": [{"id", "name", "address", "pointCount", "bounds": {"min": [x, y, z], "max": […]} or null,
 //              "sizeBytes", "etag"}]}
 std::string cloudListJson(const std::vector<NamedCloud>& clouds);

@@ -3,6 +3,7 @@
 #include "server/api/api.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/representation.hpp"
+#include "server/site/cloud_address.hpp"
 #include "server/site/cloud_problem.hpp"
 #include "server/site/request_rules.hpp"
 #include "shared/base/text.hpp"
@@ -13,28 +14,19 @@ namespace {
 
 constexpr const char* allowedMethods = "GET, HEAD, OPTIONS";
 constexpr const char* revalidated = "no-cache";
-constexpr std::string_view fileSuffix = ".stipple";
 
-// On every status: a browser hides a 404 or 412 without them as it would hide a 200 (Fetch standard, CORS
-// protocol). Clouds are public to whoever reaches the server, so any origin may read them.
-void setCommonFields(HttpResponse& response) {
-    response.set("Access-Control-Allow-Origin", "*");
-    response.set("Access-Control-Expose-Headers",
-                 "Accept-Ranges, Content-Length, Content-Range, ETag, Last-Modified");
-    response.set("Cross-Origin-Resource-Policy", "cross-origin");
-    response.set("X-Content-Type-Options", "nosniff");
+bool isRead(const HttpRequest& request) {
+    return request.method == "GET" || request.method == "HEAD";
 }
 
-// Also the preflight: which fields a cross-origin request may carry, remembered for two hours.
-HttpResponse answerOptions() {
-    HttpResponse response;
-    response.status = 204;
-    response.set("Allow", allowedMethods);
-    response.set("Access-Control-Allow-Methods", allowedMethods);
-    response.set("Access-Control-Allow-Headers",
-                 "Range, If-Range, If-Match, If-None-Match, If-Modified-Since, If-Unmodified-Since");
-    response.set("Access-Control-Max-Age", "7200");
-    return response;
+// For what needs credentials: no cache that others use may keep it (RFC 9111 §5.2.2.7).
+std::string privateCaching(std::string value) {
+    constexpr std::string_view forAll = "public";
+    if (value.find("no-store") != std::string::npos || value.find("private") != std::string::npos)
+        return value;
+    if (std::size_t at = value.find(forAll); at != std::string::npos)
+        return value.replace(at, forAll.size(), "private");
+    return value.empty() ? "private" : cat("private, ", value);
 }
 
 } // namespace
@@ -51,40 +43,79 @@ Answer Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
 }
 
 void Site::complete(const HttpRequest& request, HttpResponse& response) const {
-    setProblemInstance(response, request.target);
-    setCommonFields(response);
+    bool forAll = isForAll(request, response);
+    if (request.target.size() <= maxTargetBytes) // a longer one is refused, not sent back
+        setProblemInstance(response, request.target);
+    cors_.complete(request, response, forAll);
+    if (!forAll)
+        response.set("Cache-Control", privateCaching(response.field("Cache-Control")));
+    if (response.field("Cross-Origin-Resource-Policy").empty())
+        response.set("Cross-Origin-Resource-Policy", forAll ? "cross-origin" : "same-origin");
+    response.set("X-Content-Type-Options", "nosniff");
     if (request.method == "HEAD")
         response.sendsBody = false;
 }
 
+// Whether the response says nothing that needs credentials. It must not depend on whether a cloud exists or
+// is private where the client may not know that: what is refused before the clouds are looked at is for all,
+// what is refused for lack of rights never is.
+bool Site::isForAll(const HttpRequest& request, const HttpResponse& response) const {
+    auto rules = this->rules();
+    if (!rules || !rules->hidesAny())
+        return true;
+    if (!response.field("WWW-Authenticate").empty())
+        return false;
+    if (!isRead(request) || response.closes)
+        return true;
+    auto target = parseTarget(request.target);
+    if (!target)
+        return true;
+    if (isCloudList(*target))
+        return request.count("Authorization") == 0 && !parseAddressSignature(target->query).isPresent;
+    auto id = cloudIdOf(*target);
+    return !id || !rules->isPrivate(*id);
+}
+
 Answer Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
     if (request.method == "OPTIONS" && request.target == "*")
-        return answerOptions();
+        return preflightResponse(allowedMethods);
     if (request.target.size() > maxTargetBytes)
         return problemResponse(414, cat("the target is longer than ", maxTargetBytes, " bytes"));
     auto target = parseTarget(request.target);
     if (!target)
         return problemResponse(400, target.error().what);
     if (request.method == "OPTIONS")
-        return answerOptions();
-    if (request.method != "GET" && request.method != "HEAD")
+        return preflightResponse(allowedMethods);
+    if (!isRead(request))
         return methodNotAllowed(request.method, allowedMethods);
-
-    const std::vector<std::string>& path = target->segments;
-    if (isApiPath(*target))
-        return answerApi(request, *target, *catalog_, nowSeconds);
-    if (path.size() == 2 && path[0] == "clouds")
-        return answerFile(request, path[1], nowSeconds);
-    if (!path.empty() && (path[0] == "api" || path[0] == "clouds"))
-        return problemResponse(404, "there is nothing at this address");
-    return page_.answer(request, *target, nowSeconds);
+    return routeRead(request, std::move(*target), nowSeconds);
 }
 
-HttpResponse Site::answerFile(const HttpRequest& request, std::string_view name,
-                              std::int64_t nowSeconds) const {
-    if (!name.ends_with(fileSuffix))
+// Rights come before everything that depends on a cloud: conditions, ranges, parameters, whether it exists.
+Answer Site::routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds) const {
+    Visitor visitor(rules(), request, target.query, nowSeconds);
+    target.query = withoutSignature(target.query);
+    auto id = cloudIdOf(target);
+    std::optional<HttpResponse> refusal;
+    if (id)
+        refusal = visitor.refusal(*id, catalog_->holds(*id));
+    else if (isCloudList(target))
+        refusal = visitor.refusalOfList();
+    if (refusal)
+        return std::move(*refusal);
+
+    if (isApiPath(target))
+        return answerApi(request, target, *catalog_, visitor, nowSeconds);
+    if (id)
+        return answerFile(request, *id, nowSeconds);
+    if (!target.segments.empty() && (target.segments[0] == "api" || target.segments[0] == "clouds"))
         return problemResponse(404, "there is nothing at this address");
-    auto version = catalog_->current(name.substr(0, name.size() - fileSuffix.size()));
+    return page_.answer(request, target, nowSeconds);
+}
+
+HttpResponse Site::answerFile(const HttpRequest& request, const std::string& id,
+                              std::int64_t nowSeconds) const {
+    auto version = catalog_->current(id);
     if (!version)
         return cloudProblem(version.error());
     return answerRepresentation(

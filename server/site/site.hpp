@@ -1,11 +1,13 @@
-// From a request to its response: routes, CORS, and what every response carries. Knows no socket. Thread:
-// any.
+// From a request to its response: routes, who may read what, and what every response carries. Knows no
+// socket. Thread: any.
 //
 //   /                        the page              GET HEAD OPTIONS
 //   /api/v1/…                server/api            GET HEAD OPTIONS
 //   /clouds/ID.stipple       its file, in ranges   GET HEAD OPTIONS
 #pragma once
 
+#include "server/access/access_control.hpp"
+#include "server/http/cors.hpp"
 #include "server/http/handler.hpp"
 #include "server/http/target.hpp"
 #include "server/site/cloud_catalog.hpp"
@@ -18,21 +20,33 @@ namespace stipple::server {
 
 inline constexpr std::size_t maxTargetBytes = 4096; // longer: 414
 
+struct SiteOptions {
+    std::unique_ptr<AccessControl> access; // null: every cloud is public
+    CorsRules cors;
+};
+
 class Site final : public RequestHandler {
   public:
-    Site(std::unique_ptr<CloudCatalog> catalog, Page page)
-        : catalog_(std::move(catalog)), page_(std::move(page)) {}
+    Site(std::unique_ptr<CloudCatalog> catalog, Page page, SiteOptions options = {})
+        : catalog_(std::move(catalog)), page_(std::move(page)), access_(std::move(options.access)),
+          cors_(std::move(options.cors)) {}
 
     Answer answer(const HttpRequest& request, std::int64_t nowSeconds) const override;
     void complete(const HttpRequest& request, HttpResponse& response) const override;
     const CloudCatalog& catalog() const { return *catalog_; }
+    AccessControl* access() const { return access_.get(); } // null: every cloud is public
 
   private:
+    std::shared_ptr<const AccessRules> rules() const { return access_ ? access_->rules() : nullptr; }
+    bool isForAll(const HttpRequest& request, const HttpResponse& response) const;
     Answer route(const HttpRequest& request, std::int64_t nowSeconds) const;
-    HttpResponse answerFile(const HttpRequest& request, std::string_view name, std::int64_t nowSeconds) const;
+    Answer routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds) const;
+    HttpResponse answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const;
 
     std::unique_ptr<CloudCatalog> catalog_;
     Page page_;
+    std::unique_ptr<AccessControl> access_;
+    CorsRules cors_;
 };
 
 } // namespace stipple::server

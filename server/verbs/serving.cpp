@@ -2,7 +2,7 @@
 
 #include "server/net/server.hpp"
 #include "server/net/signals.hpp"
-#include "server/site/cloud_json.hpp"
+#include "server/site/cloud_address.hpp"
 #include "server/site/site.hpp"
 
 #include <chrono>
