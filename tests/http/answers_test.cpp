@@ -1,8 +1,10 @@
-// Status and fields of every kind of answer, over a socket, against golden texts.
+// What answers hold, over a socket: bytes, documents, and what must not be there. Their fields are in
+// golden/.
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
 
 #include <catch2/catch.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 using namespace stipple;
@@ -28,47 +30,17 @@ const std::string cloudTarget = "/clouds/town.stipple";
 
 } // namespace
 
-TEST_CASE("a whole cloud is a 200 with its validators, open to every origin") {
+TEST_CASE("a whole cloud is its file") {
     auto response = ask("GET " + cloudTarget);
     std::string file = readFile(shared().folder().cloud());
     CHECK(response.body == file);
-    CHECK(golden(response) == "HTTP/1.1 200 OK\n"
-                              "Server: stipple\n"
-                              "ETag: <...>\n"
-                              "Last-Modified: <...>\n"
-                              "Cache-Control: no-cache\n"
-                              "Accept-Ranges: bytes\n"
-                              "Content-Type: application/octet-stream\n"
-                              "Access-Control-Allow-Origin: *\n"
-                              "Access-Control-Expose-Headers: Accept-Ranges, Content-Length, Content-Range, "
-                              "ETag, Last-Modified\n"
-                              "Cross-Origin-Resource-Policy: cross-origin\n"
-                              "X-Content-Type-Options: nosniff\n"
-                              "Content-Length: " +
-                                  std::to_string(file.size()) + "\nConnection: keep-alive\n");
     CHECK_FALSE(response.field("date").empty());
 }
 
-TEST_CASE("a range of a cloud is a 206 that says which bytes of how many") {
+TEST_CASE("a range of a cloud is exactly those bytes") {
     auto response = ask("GET " + cloudTarget, "Range: bytes=64-163");
     std::string file = readFile(shared().folder().cloud());
     CHECK(response.body == file.substr(64, 100));
-    CHECK(golden(response) ==
-          "HTTP/1.1 206 Partial Content\n"
-          "Server: stipple\n"
-          "ETag: <...>\n"
-          "Last-Modified: <...>\n"
-          "Cache-Control: no-cache\n"
-          "Accept-Ranges: bytes\n"
-          "Content-Type: application/octet-stream\n"
-          "Content-Range: bytes 64-163/" +
-              std::to_string(file.size()) +
-              "\nAccess-Control-Allow-Origin: *\n"
-              "Access-Control-Expose-Headers: Accept-Ranges, Content-Length, Content-Range, "
-              "ETag, Last-Modified\n"
-              "Cross-Origin-Resource-Policy: cross-origin\n"
-              "X-Content-Type-Options: nosniff\n"
-              "Content-Length: 100\nConnection: keep-alive\n");
 }
 
 TEST_CASE("open-ended and suffix ranges reach the end") {
@@ -127,88 +99,11 @@ TEST_CASE("large ranges arrive byte for byte, wherever they begin and end") {
     }
 }
 
-TEST_CASE("ranges around 2^31, 2^32, 2^63 and 2^64 are exact") {
-    auto huge = [](const std::string& range) {
-        auto response = ask("GET /huge.bin", "Range: bytes=" + range);
-        return std::to_string(response.status) + " " + response.field("content-range") + " " +
-               (response.status == 206 ? response.body : "");
-    };
-    std::string zero(1, '\0');
-    CHECK(huge("2147483646-2147483649") == "206 bytes 2147483646-2147483649/5368709127 MARK");
-    CHECK(huge("4294967294-4294967297") == "206 bytes 4294967294-4294967297/5368709127 MARK");
-    CHECK(huge("4294967293-4294967293") == "206 bytes 4294967293-4294967293/5368709127 " + zero);
-    CHECK(huge("5368709123-9223372036854775807") == "206 bytes 5368709123-5368709126/5368709127 MARK");
-    CHECK(huge("5368709123-9223372036854775808") == "206 bytes 5368709123-5368709126/5368709127 MARK");
-    CHECK(huge("5368709123-18446744073709551615") == "206 bytes 5368709123-5368709126/5368709127 MARK");
-    CHECK(huge("5368709123-18446744073709551616") == "206 bytes 5368709123-5368709126/5368709127 MARK");
-    CHECK(huge("-4") == "206 bytes 5368709123-5368709126/5368709127 MARK");
-    CHECK(huge("5368709127-") == "416 bytes */5368709127 ");
-    CHECK(huge("18446744073709551616-") == "416 bytes */5368709127 ");
-    CHECK(huge("-0") == "416 bytes */5368709127 ");
-    CHECK(huge("5-4") == "416 bytes */5368709127 ");
-    CHECK(huge("abc") == "416 bytes */5368709127 "); // no 5 GB by a typing error
-}
-
-TEST_CASE("an empty file has no satisfiable range") {
-    auto whole = ask("GET /empty.txt");
-    CHECK(whole.status == 200);
-    CHECK(whole.field("content-length") == "0");
-    for (const char* range : {"0-", "0-0", "-1", "-0"})
-        CHECK(ask("GET /empty.txt", std::string("Range: bytes=") + range).field("content-range") ==
-              "bytes */0");
-}
-
-TEST_CASE("unknown units are ignored, and too many ranges refused") {
-    CHECK(ask("GET " + cloudTarget, "Range: points=0-9").status == 200);
-    std::string many = "Range: bytes=0-0";
-    for (int i = 1; i < 100; ++i)
-        many += "," + std::to_string(i * 1000) + "-" + std::to_string(i * 1000);
-    CHECK(ask("GET /pattern.bin", many).status == 416);
-}
-
-TEST_CASE("a range outside the file is a 416 problem that names the size and the version") {
-    auto response = ask("GET " + cloudTarget, "Range: bytes=99999999-");
-    std::string size = std::to_string(readFile(shared().folder().cloud()).size());
-    CHECK(golden(response) ==
-          "HTTP/1.1 416 Range Not Satisfiable\n"
-          "Server: stipple\n"
-          "Content-Type: application/problem+json\n"
-          "Cache-Control: no-store\n"
-          "ETag: <...>\n"
-          "Last-Modified: <...>\n"
-          "Accept-Ranges: bytes\n"
-          "Content-Range: bytes */" +
-              size +
-              "\nAccess-Control-Allow-Origin: *\n"
-              "Access-Control-Expose-Headers: Accept-Ranges, Content-Length, Content-Range, "
-              "ETag, Last-Modified\n"
-              "Cross-Origin-Resource-Policy: cross-origin\n"
-              "X-Content-Type-Options: nosniff\n"
-              "Content-Length: " +
-              std::to_string(response.body.size()) + "\nConnection: keep-alive\n");
-    auto problem = nlohmann::json::parse(response.body, nullptr, false);
-    CHECK(problem["status"] == 416);
-    CHECK(problem["title"] == "Range Not Satisfiable");
-    CHECK(problem["detail"].is_string());
-}
-
 TEST_CASE("conditions are answered by version") {
     std::string tag = tagOf(cloudTarget);
     REQUIRE(tag.size() > 2);
     auto notModified = ask("GET " + cloudTarget, "If-None-Match: \"x\", " + tag);
-    CHECK(golden(notModified) ==
-          "HTTP/1.1 304 Not Modified\n"
-          "Server: stipple\n"
-          "ETag: <...>\n"
-          "Last-Modified: <...>\n"
-          "Cache-Control: no-cache\n"
-          "Accept-Ranges: bytes\n"
-          "Access-Control-Allow-Origin: *\n"
-          "Access-Control-Expose-Headers: Accept-Ranges, Content-Length, Content-Range, "
-          "ETag, Last-Modified\n"
-          "Cross-Origin-Resource-Policy: cross-origin\n"
-          "X-Content-Type-Options: nosniff\n"
-          "Connection: keep-alive\n");
+    CHECK(notModified.status == 304);
     CHECK(ask("HEAD " + cloudTarget, "If-None-Match: " + tag).status == 304);
     auto failed = ask("GET " + cloudTarget, "If-Match: \"old\"\nRange: bytes=0-9");
     CHECK(failed.status == 412);
@@ -220,48 +115,7 @@ TEST_CASE("conditions are answered by version") {
     std::string date = ask("HEAD " + cloudTarget).field("last-modified");
     CHECK(ask("GET " + cloudTarget, "If-Modified-Since: " + date).status == 304);
     CHECK(ask("GET " + cloudTarget, "If-Unmodified-Since: " + date).status == 200);
-    CHECK(ask("GET " + cloudTarget, "If-Unmodified-Since: Sun, 06 Nov 1994 08:49:37 GMT").status == 412);
-}
-
-TEST_CASE("HEAD says what GET would, without the body and without the range") {
-    auto head = ask("HEAD " + cloudTarget, "Range: bytes=0-9");
-    auto get = ask("GET " + cloudTarget);
-    CHECK(golden(head) == golden(get));
-    CHECK(head.status == 200);
-    RawClient client(shared().port());
-    CHECK(client.ask("HEAD /none HTTP/1.1\nHost: a").status == 404);
-    CHECK(client.ask("GET / HTTP/1.1\nHost: a").status == 200); // nothing of a body was in between
-}
-
-TEST_CASE("a preflight is answered for every address") {
-    auto response =
-        ask("OPTIONS " + cloudTarget, "Origin: https://example.org\nAccess-Control-Request-Method: GET\n"
-                                      "Access-Control-Request-Headers: range, if-match");
-    CHECK(golden(response) == "HTTP/1.1 204 No Content\n"
-                              "Server: stipple\n"
-                              "Allow: GET, HEAD, OPTIONS\n"
-                              "Access-Control-Allow-Methods: GET, HEAD, OPTIONS\n"
-                              "Access-Control-Allow-Headers: Range, If-Range, If-Match, If-None-Match, "
-                              "If-Modified-Since, If-Unmodified-Since\n"
-                              "Access-Control-Max-Age: 7200\n"
-                              "Access-Control-Allow-Origin: *\n"
-                              "Access-Control-Expose-Headers: Accept-Ranges, Content-Length, Content-Range, "
-                              "ETag, Last-Modified\n"
-                              "Cross-Origin-Resource-Policy: cross-origin\n"
-                              "X-Content-Type-Options: nosniff\n"
-                              "Connection: keep-alive\n");
-    CHECK(ask("OPTIONS *").status == 204);
-}
-
-TEST_CASE("other methods are refused with the allowed ones, unknown ones as such") {
-    for (const char* method : {"POST", "PUT", "DELETE", "PATCH", "TRACE"}) {
-        auto response = ask(std::string(method) + " " + cloudTarget, "Content-Length: 0");
-        CHECK(response.status == 405);
-        CHECK(response.field("allow") == "GET, HEAD, OPTIONS");
-        CHECK(response.field("access-control-allow-origin") == "*");
-    }
-    CHECK(ask("BREW " + cloudTarget).status == 501);
-    CHECK(ask("get " + cloudTarget).status == 501);
+    CHECK(ask("GET " + cloudTarget, "If-Unmodified-Since: Sat, 05 Nov 1994 08:49:37 GMT").status == 412);
 }
 
 TEST_CASE("the list of clouds says what each is and where") {
@@ -289,17 +143,6 @@ TEST_CASE("one cloud's document holds the metadata of its file") {
     CHECK(json["metadata"]["pointCount"] == 20'000);
 }
 
-TEST_CASE("what does not exist is a 404 problem, readable by other origins") {
-    for (const char* target : {"/api/v1/clouds/none", "/clouds/none.stipple", "/clouds/town", "/clouds/",
-                               "/api/v2", "/api/v1/clouds/town/x", "/none.html", "/assets", "/assets/"}) {
-        INFO(target);
-        auto response = ask(std::string("GET ") + target);
-        CHECK(response.status == 404);
-        CHECK(response.field("content-type") == "application/problem+json");
-        CHECK(response.field("access-control-allow-origin") == "*");
-    }
-}
-
 TEST_CASE("the page has content types, revalidation, immutable assets and a policy that lets it work") {
     auto index = ask("GET /");
     CHECK(index.status == 200);
@@ -317,15 +160,61 @@ TEST_CASE("the page has content types, revalidation, immutable assets and a poli
     CHECK(asset.field("cache-control") == "public, max-age=31536000, immutable");
 }
 
-TEST_CASE("no path leads out of the page folder") {
-    for (const char* target :
-         {"/../secret.txt", "/%2e%2e/secret.txt", "/..%2fsecret.txt", "/assets/../../secret.txt", "/link.txt",
-          "/%2e%2e%5csecret.txt", "/..\\secret.txt", "//etc/passwd", "/%2fetc/passwd", "/index.html%00.js",
-          "/clouds/../secret.txt", "/clouds/..%2f..%2fsecret.txt", "/.git/config", "/%"}) {
-        INFO(target);
-        auto response = ask(std::string("GET ") + target);
-        CHECK((response.status == 400 || response.status == 404));
-        CHECK(response.body.find("secret\n") == std::string::npos);
-        CHECK(response.field("content-type") == "application/problem+json");
+TEST_CASE("nothing follows the head of an answer to HEAD") {
+    RawClient client(shared().port());
+    CHECK(client.ask("HEAD /none HTTP/1.1\nHost: a").status == 404);
+    CHECK(client.ask("HEAD /letters.txt HTTP/1.1\nHost: a").status == 200);
+    CHECK(client.ask("GET /letters.txt HTTP/1.1\nHost: a").body == "abcdefghijklmnopqrstuvwxyz");
+}
+
+// What has led out of the folders of other servers: dot segments plain, encoded once and twice, in overlong
+// UTF-8 and as UTF-16 escapes; slashes and backslashes of every kind; NUL and line ends; drive letters and
+// streams; parameters of segments; absolute forms; hidden files; links.
+TEST_CASE("no path leads out of the page folder, or to a hidden file") {
+    std::vector<std::string> targets{
+        "/link.txt", "/.git/config", "/assets/.hidden", "/secret.txt", "/..", "/../", "/."};
+    for (const char* dots : {"..",
+                             "%2e%2e",
+                             "%2E%2E",
+                             ".%2e",
+                             "%2e.",
+                             "%252e%252e",
+                             "%c0%ae%c0%ae",
+                             "%e0%80%ae%e0%80%ae",
+                             "%u002e%u002e",
+                             "..;",
+                             "..;x=1",
+                             "...",
+                             "....",
+
+                             "..%20",
+                             "..%00",
+                             "..%0d%0a",
+                             "%uff0e%uff0e",
+                             "%ef%bc%8e%ef%bc%8e",
+                             "..::$DATA",
+                             "C:",
+                             "~"})
+        for (const char* slash : {"/", "%2f", "%2F", "\\", "%5c", "%252f", "%c0%af", "%e0%80%af", "%u2215",
+                                  "//", "/./", "%ef%bc%8f"})
+            for (const char* start : {"/", "/assets/", "/clouds/", "/api/v1/clouds/", "http://localhost/"})
+                for (const char* name : {"secret.txt", "secret.txt.stipple"}) {
+                    targets.push_back(std::string(start) + dots + slash + name);
+                    targets.push_back(std::string(start) + dots + slash + dots + slash + name);
+                }
+    auto client = std::make_unique<RawClient>(shared().port());
+    std::size_t wrong = 0;
+    for (const std::string& target : targets) {
+        auto response = client->ask("GET " + target + " HTTP/1.1\nHost: a");
+        bool isRefused = (response.status == 400 || response.status == 404) &&
+                         response.field("content-type") == "application/problem+json";
+        if (!isRefused) {
+            UNSCOPED_INFO(target << ": " << response.status);
+            ++wrong;
+        }
+        if (response.field("connection") != "keep-alive") // a space in the target, say: no request at all
+            client = std::make_unique<RawClient>(shared().port());
     }
+    CHECK(wrong == 0);
+    CHECK(targets.size() > 5000);
 }

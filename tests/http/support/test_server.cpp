@@ -4,9 +4,11 @@
 #include "shared/format/cloud_writer.hpp"
 
 #include <catch2/catch.hpp>
+#include <fcntl.h>
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <sys/stat.h>
 #include <thread>
 
 namespace stipple::test {
@@ -51,6 +53,14 @@ char patternByte(std::uint64_t offset) {
     return static_cast<char>((offset * 2654435761u) >> 16);
 }
 
+// "line 00" to "line 99", 8 bytes each.
+static std::string hundredLines() {
+    std::string text;
+    for (int i = 0; i < 100; ++i)
+        text += "line " + std::to_string(i / 10) + std::to_string(i % 10) + "\n";
+    return text;
+}
+
 TestFolder::TestFolder() {
     std::string pattern = (fs::temp_directory_path() / "stipple-http-XXXXXX").string();
     path_ = ::mkdtemp(pattern.data());
@@ -58,6 +68,12 @@ TestFolder::TestFolder() {
     fs::create_directories(path_ / "clouds");
     std::ofstream(page() / "index.html") << "<!doctype html><title>test</title>";
     std::ofstream(page() / "assets" / "app-A1b2C3d4.js") << "export {};";
+    for (const char* coding : {"br", "zst", "gz"})
+        std::ofstream(page() / "assets" / (std::string("app-A1b2C3d4.js.") + coding))
+            << coding << " of export {};";
+    std::ofstream(page() / "letters.txt") << "abcdefghijklmnopqrstuvwxyz";
+    for (const char* name : {"lines.txt", "assets/lines-A1b2C3d4.js", "assets/lines-A1b2C3d4.js.br"})
+        std::ofstream(page() / name) << hundredLines();
     std::ofstream(page() / "core.wasm") << std::string("\0asm", 4);
     std::ofstream(page() / "empty.txt");
     std::ofstream(path_ / "secret.txt") << "secret";
@@ -75,6 +91,14 @@ TestFolder::TestFolder() {
         huge.seekp(static_cast<std::streamoff>(at)).write(mark, 4);
     huge.close();
     writeCloud(cloud().string(), 20'000, 1);
+    for (const auto& entry : fs::recursive_directory_iterator(path_))
+        if (entry.is_regular_file())
+            setChangedTime(entry.path(), changedSeconds);
+}
+
+void setChangedTime(const fs::path& path, std::int64_t seconds) {
+    struct timespec times[2] = {{0, UTIME_OMIT}, {seconds, 0}};
+    REQUIRE(::utimensat(AT_FDCWD, path.c_str(), times, 0) == 0);
 }
 
 TestFolder::~TestFolder() {
@@ -88,11 +112,12 @@ server::ServerLimits TestServer::quickLimits() {
     return limits;
 }
 
-TestServer::TestServer(server::ServerLimits limits) {
-    auto catalog = need(server::CloudCatalog::open({folder_.cloud().string()}));
+TestServer::TestServer(server::ServerLimits limits, const Prepare& prepare) {
+    server::SiteOptions siteOptions = prepare ? prepare(folder_) : server::SiteOptions();
+    auto catalog = need(server::CloudCatalog::open({folder_.clouds().string()}));
     auto page = need(server::openPageFolder(folder_.page().string()));
-    auto site =
-        std::make_shared<const server::Site>(std::move(catalog.catalog), server::Page(std::move(page)));
+    auto site = std::make_shared<const server::Site>(std::move(catalog.catalog),
+                                                     server::Page(std::move(page)), std::move(siteOptions));
     server::ServerOptions options;
     options.limits = limits;
     options.threads = 2;

@@ -1,10 +1,13 @@
 // A real server on a free port of 127.0.0.1, over a folder of its own: one cloud (town.stipple), and a page
-// with files of known content, among them a sparse one beyond 2^32 bytes. Its log is kept.
+// with files of known content, among them a sparse one beyond 2^32 bytes, and one in every content coding.
+// All files were changed last at 1994-11-06 08:49:37. Its log is kept.
 #pragma once
 
 #include "server/net/server.hpp"
+#include "server/site/site.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -15,6 +18,7 @@ namespace stipple::test {
 // A cloud of `points` random points, different for each seed.
 void writeCloud(const std::string& path, std::size_t points, std::uint32_t seed);
 std::string readFile(const std::filesystem::path& path);
+void setChangedTime(const std::filesystem::path& path, std::int64_t seconds); // since 1970
 // Byte `offset` of page/pattern.bin.
 char patternByte(std::uint64_t offset);
 
@@ -25,8 +29,10 @@ class TestFolder {
     ~TestFolder();
     std::filesystem::path path() const { return path_; }
     std::filesystem::path page() const { return path_ / "page"; }
-    std::filesystem::path cloud() const { return path_ / "clouds" / "town.stipple"; }
+    std::filesystem::path clouds() const { return path_ / "clouds"; }
+    std::filesystem::path cloud() const { return clouds() / "town.stipple"; }
 
+    static constexpr std::int64_t changedSeconds = 784'111'777;  // 1994-11-06 08:49:37 UTC
     static constexpr std::uint64_t patternBytes = 3'000'000;     // page/pattern.bin
     static constexpr std::uint64_t hugeBytes = (5ull << 30) + 7; // page/huge.bin: zeros, but for the marks
     static constexpr const char* mark = "MARK";                  // at 2^31 - 2, 2^32 - 2 and the end - 4
@@ -37,7 +43,9 @@ class TestFolder {
 
 class TestServer {
   public:
-    explicit TestServer(server::ServerLimits limits = quickLimits());
+    // `prepare` may add to the folder, of which all of clouds/ is served.
+    using Prepare = std::function<server::SiteOptions(TestFolder& folder)>;
+    explicit TestServer(server::ServerLimits limits = quickLimits(), const Prepare& prepare = {});
     static server::ServerLimits quickLimits(); // as in service, but looked at every 20 ms
 
     std::uint16_t port() const { return server_->port(); }

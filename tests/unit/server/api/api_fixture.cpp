@@ -61,7 +61,8 @@ ApiAnswer ApiFixture::ask(const std::string& target, Fields fields, std::string_
     HttpRequest request{method, target, 11, std::move(fields)};
     auto parsed = parseTarget(request.target);
     REQUIRE(parsed.ok());
-    Answer answer = answerApi(request, *parsed, *catalog_, 1'700'000'000);
+    Answer answer = answerApi(request, *parsed, *catalog_,
+                              Visitor(nullptr, request, parsed->query, 1'700'000'000), 1'700'000'000);
     ApiAnswer result;
     if (auto* job = std::get_if<Job>(&answer)) {
         Collector collector;
