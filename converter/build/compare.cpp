@@ -1,23 +1,15 @@
 #include "converter/build/compare.hpp"
 
-#include "converter/build/morton_order.hpp"
-#include "converter/build/tile.hpp"
+#include "converter/build/morton.hpp"
 #include "shared/base/text.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace stipple {
 
 namespace {
-constexpr std::size_t maxSentences = 10;
-
-BoxI boundsOf(const PointStore& store) {
-    BoxI bounds;
-    for (std::size_t i = 0; i < store.size(); ++i)
-        bounds.extend(store.position(i));
-    return bounds;
-}
-
 std::string hexBytes(const std::uint8_t* bytes, std::size_t size) {
     std::string text;
     for (std::size_t i = 0; i < size; ++i) {
@@ -59,118 +51,170 @@ std::string valueText(const Attribute& attribute, const std::uint8_t* bytes) {
     return {};
 }
 
-// Walks both sides in Morton order, one position after the other.
-class Comparer {
-  public:
-    Comparer(const PointStore& file, const PointStore& inputs, const Grid& grid, const Schema& schema)
-        : file_(file), inputs_(inputs), grid_(grid), schema_(schema) {}
+constexpr const char* missingText = "a point of the inputs is not in the file";
 
-    Result<Comparison> run(int threads, const std::atomic<bool>* stop) {
-        result_.filePoints = file_.size();
-        result_.inputPoints = inputs_.size();
-        result_.changedPerAttribute.assign(schema_.attributes.size(), 0);
-        BoxI bounds = boundsOf(file_);
-        bounds.extend(boundsOf(inputs_));
-        STIPPLE_TRY(cube, rootCubeOf(bounds));
-        STIPPLE_TRY(fileOrder, mortonOrder(file_, cube, threads, stop));
-        STIPPLE_TRY(inputOrder, mortonOrder(inputs_, cube, threads, stop));
-        std::size_t f = 0, i = 0;
-        while (f < fileOrder.size() || i < inputOrder.size()) {
-            int order = f == fileOrder.size()    ? 1
-                        : i == inputOrder.size() ? -1
-                                                 : compareMorton(file_.position(fileOrder[f]) - cube.min,
-                                                                 inputs_.position(inputOrder[i]) - cube.min);
-            if (order < 0)
-                noteSurplus(fileOrder[f++]);
-            else if (order > 0)
-                noteMissing(inputOrder[i++]);
-            else
-                comparePosition(fileOrder, f, inputOrder, i);
-        }
-        return std::move(result_);
-    }
+Comparison::Difference difference(const Grid& grid, Vec3i position, const std::string& what,
+                                  std::uint64_t count) {
+    Vec3d world = grid.toWorld(position);
+    char place[120];
+    std::snprintf(place, sizeof place, "at (%.10g, %.10g, %.10g): ", world.x, world.y, world.z);
+    return {position, cat(place, what, count > 1 ? cat(" (", count, " times)") : "")};
+}
 
-  private:
-    using Order = std::vector<std::uint32_t>;
-
-    // All points of one position: equal ones cancel, the rest are paired in order.
-    void comparePosition(const Order& fileOrder, std::size_t& f, const Order& inputOrder, std::size_t& i) {
-        Vec3i position = file_.position(fileOrder[f]);
-        fileRest_.clear();
-        inputRest_.clear();
-        auto fileHas = [&] { return f < fileOrder.size() && file_.position(fileOrder[f]) == position; };
-        auto inputHas = [&] { return i < inputOrder.size() && inputs_.position(inputOrder[i]) == position; };
-        std::size_t bytes = file_.rowBytes() - sizeof(Vec3i);
-        while (fileHas() && inputHas()) {
-            int order = std::memcmp(file_.attributes(fileOrder[f]), inputs_.attributes(inputOrder[i]), bytes);
-            if (order == 0) {
-                ++result_.equalPoints;
-                ++f;
-                ++i;
-            } else if (order < 0) {
-                fileRest_.push_back(fileOrder[f++]);
-            } else {
-                inputRest_.push_back(inputOrder[i++]);
-            }
-        }
-        while (fileHas())
-            fileRest_.push_back(fileOrder[f++]);
-        while (inputHas())
-            inputRest_.push_back(inputOrder[i++]);
-        std::size_t pairs = std::min(fileRest_.size(), inputRest_.size());
-        for (std::size_t p = 0; p < pairs; ++p)
-            noteChanged(fileRest_[p], inputRest_[p]);
-        for (std::size_t p = pairs; p < fileRest_.size(); ++p)
-            noteSurplus(fileRest_[p]);
-        for (std::size_t p = pairs; p < inputRest_.size(); ++p)
-            noteMissing(inputRest_[p]);
-    }
-
-    void noteChanged(std::uint32_t filePoint, std::uint32_t inputPoint) {
-        ++result_.changed;
-        std::string differences;
-        const std::uint8_t *ours = file_.attributes(filePoint), *theirs = inputs_.attributes(inputPoint);
-        for (std::size_t a = 0; a < schema_.attributes.size(); ++a) {
-            const Attribute& attribute = schema_.attributes[a];
-            if (std::memcmp(ours, theirs, attribute.size()) != 0) {
-                ++result_.changedPerAttribute[a];
-                if (result_.first.size() < maxSentences)
-                    differences += cat(differences.empty() ? "" : ", ", attribute.name, " is ",
-                                       valueText(attribute, ours), ", not ", valueText(attribute, theirs));
-            }
-            ours += attribute.size();
-            theirs += attribute.size();
-        }
-        say(file_.position(filePoint), differences);
-    }
-    void noteSurplus(std::uint32_t filePoint) {
-        ++result_.surplus;
-        say(file_.position(filePoint), "the file has a point that is not in the inputs");
-    }
-    void noteMissing(std::uint32_t inputPoint) {
-        ++result_.missing;
-        say(inputs_.position(inputPoint), "a point of the inputs is not in the file");
-    }
-    void say(Vec3i position, const std::string& what) {
-        if (result_.first.size() >= maxSentences)
-            return;
-        Vec3d world = grid_.toWorld(position);
-        char text[120];
-        std::snprintf(text, sizeof text, "at (%.10g, %.10g, %.10g): ", world.x, world.y, world.z);
-        result_.first.push_back(text + what);
-    }
-
-    const PointStore &file_, &inputs_;
-    const Grid& grid_;
-    const Schema& schema_;
-    Comparison result_;
-    std::vector<std::uint32_t> fileRest_, inputRest_;
-};
+void keepFirst(std::vector<Comparison::Difference>& differences) {
+    std::sort(differences.begin(), differences.end());
+    if (differences.size() > Comparison::mostDifferences)
+        differences.resize(Comparison::mostDifferences);
+}
 } // namespace
 
-Result<Comparison> comparePoints(const PointStore& file, const PointStore& inputs, const Grid& grid,
-                                 const Schema& schema, int threads, const std::atomic<bool>* stop) {
-    return Comparer(file, inputs, grid, schema).run(threads, stop);
+bool operator<(const Comparison::Difference& a, const Comparison::Difference& b) {
+    int order = compareMorton(a.position, b.position);
+    return order != 0 ? order < 0 : a.text < b.text;
+}
+
+void Comparison::add(const Comparison& other) {
+    filePoints += other.filePoints;
+    inputPoints += other.inputPoints;
+    equalPoints += other.equalPoints;
+    changed += other.changed;
+    changedPerAttribute.resize(std::max(changedPerAttribute.size(), other.changedPerAttribute.size()));
+    for (std::size_t a = 0; a < other.changedPerAttribute.size(); ++a)
+        changedPerAttribute[a] += other.changedPerAttribute[a];
+    missing += other.missing;
+    surplus += other.surplus;
+    first.insert(first.end(), other.first.begin(), other.first.end());
+    keepFirst(first);
+}
+
+void Comparison::addMissing(const Grid& grid, Vec3i position) {
+    constexpr std::size_t untilSorted = 16 * mostDifferences;
+    ++inputPoints;
+    ++missing;
+    first.push_back(difference(grid, position, missingText, 1));
+    if (first.size() >= untilSorted)
+        keepFirst(first);
+}
+
+PointComparer::PointComparer(const RowLayout& layout, const Grid& grid)
+    : layout_(layout), grid_(grid), file_(layout.rowBytes()), missing_(layout.rowBytes()) {
+    begin(0);
+}
+
+void PointComparer::begin(std::size_t filePoints) {
+    file_.clear(filePoints);
+    missing_.clear(0);
+    result_ = {};
+    result_.changedPerAttribute.assign(layout_.schema().attributes.size(), 0);
+}
+
+// A few rows at a time, so that the memory for one is fetched while others are looked up.
+template <class Take>
+void PointComparer::forEachHashed(const std::uint8_t* rows, std::size_t count, const CountedRows& soon,
+                                  Take take) {
+    constexpr std::size_t group = 32;
+    std::array<std::uint32_t, group> hashes;
+    const std::size_t rowBytes = layout_.rowBytes();
+    for (std::size_t first = 0; first < count; first += group) {
+        const std::size_t size = std::min(group, count - first);
+        for (std::size_t i = 0; i < size; ++i) {
+            hashes[i] = CountedRows::hashOf(rows + (first + i) * rowBytes, rowBytes);
+            soon.prefetch(hashes[i]);
+        }
+        for (std::size_t i = 0; i < size; ++i)
+            take(rows + (first + i) * rowBytes, hashes[i]);
+    }
+}
+
+void PointComparer::addFile(const std::uint8_t* rows, std::size_t count) {
+    result_.filePoints += count;
+    forEachHashed(rows, count, file_,
+                  [&](const std::uint8_t* row, std::uint32_t hash) { file_.add(row, hash); });
+}
+
+void PointComparer::addInput(const std::uint8_t* rows, std::size_t count) {
+    result_.inputPoints += count;
+    forEachHashed(rows, count, file_, [&](const std::uint8_t* row, std::uint32_t hash) {
+        if (file_.take(row, hash))
+            ++result_.equalPoints;
+        else
+            missing_.add(row, hash);
+    });
+}
+
+Comparison PointComparer::finish() {
+    compareRest();
+    keepFirst(result_.first);
+    return std::move(result_);
+}
+
+std::vector<PointComparer::Rest> PointComparer::sortedRest(const CountedRows& rows) const {
+    std::vector<Rest> rest;
+    rows.forEach([&](const std::uint8_t* row, std::uint64_t count) {
+        rest.push_back({row, layout_.position(row), count});
+    });
+    std::sort(rest.begin(), rest.end(), [&](const Rest& a, const Rest& b) {
+        int order = compareMorton(a.position, b.position);
+        return order != 0 ? order < 0
+                          : std::memcmp(layout_.attributes(a.row), layout_.attributes(b.row),
+                                        layout_.attributeBytes()) < 0;
+    });
+    return rest;
+}
+
+// What found no equal, in Morton order: points at one position are paired, as far as there are two.
+void PointComparer::compareRest() {
+    std::vector<Rest> file = sortedRest(file_), input = sortedRest(missing_);
+    for (std::size_t f = 0, i = 0; f < file.size() || i < input.size();) {
+        int order = f == file.size()    ? 1
+                    : i == input.size() ? -1
+                                        : compareMorton(file[f].position, input[i].position);
+        if (order < 0) {
+            noteSurplus(file[f], file[f].count);
+            ++f;
+        } else if (order > 0) {
+            noteMissing(input[i], input[i].count);
+            ++i;
+        } else {
+            std::uint64_t pairs = std::min(file[f].count, input[i].count);
+            noteChanged(file[f], input[i], pairs);
+            f += (file[f].count -= pairs) == 0 ? 1 : 0;
+            i += (input[i].count -= pairs) == 0 ? 1 : 0;
+        }
+    }
+}
+
+void PointComparer::noteChanged(const Rest& file, const Rest& input, std::uint64_t count) {
+    result_.changed += count;
+    std::string differences;
+    const std::uint8_t *ours = layout_.attributes(file.row), *theirs = layout_.attributes(input.row);
+    for (std::size_t a = 0; a < layout_.schema().attributes.size(); ++a) {
+        const Attribute& attribute = layout_.schema().attributes[a];
+        if (std::memcmp(ours, theirs, attribute.size()) != 0) {
+            result_.changedPerAttribute[a] += count;
+            if (result_.first.size() < Comparison::mostDifferences)
+                differences += cat(differences.empty() ? "" : ", ", attribute.name, " is ",
+                                   valueText(attribute, ours), ", not ", valueText(attribute, theirs));
+        }
+        ours += attribute.size();
+        theirs += attribute.size();
+    }
+    say(file.position, differences, count);
+}
+
+void PointComparer::noteSurplus(const Rest& file, std::uint64_t count) {
+    result_.surplus += count;
+    say(file.position, "the file has a point that is not in the inputs", count);
+}
+
+void PointComparer::noteMissing(const Rest& input, std::uint64_t count) {
+    result_.missing += count;
+    say(input.position, missingText, count);
+}
+
+void PointComparer::say(Vec3i position, const std::string& what, std::uint64_t count) {
+    if (result_.first.size() < Comparison::mostDifferences)
+        result_.first.push_back(difference(grid_, position, what, count));
 }
 
 } // namespace stipple

@@ -1,6 +1,7 @@
 #include "converter/build/convert.hpp"
 
 #include "converter/build/build.hpp"
+#include "converter/build/memory_share.hpp"
 #include "converter/build/output_check.hpp"
 #include "converter/build/parallel.hpp"
 #include "converter/build/scan.hpp"
@@ -15,7 +16,6 @@
 #include <filesystem>
 #include <new>
 #include <tuple>
-#include <unistd.h>
 
 namespace stipple {
 
@@ -128,26 +128,12 @@ std::string workFolderPath(const std::string& output, const ConvertOptions& opti
     return (fs::path(options.temp) / (fs::path(output).filename().string() + "." + number + ending)).string();
 }
 
-std::uint64_t memoryFor(const ConvertOptions& options) {
-    if (options.memoryBytes > 0)
-        return options.memoryBytes;
-    auto pages = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PHYS_PAGES)));
-    auto pageBytes = static_cast<std::uint64_t>(std::max(0L, ::sysconf(_SC_PAGESIZE)));
-    return std::max(ConvertOptions::leastMemoryBytes, pages * pageBytes / 4);
-}
-
 // Points go to disk if they need more than the memory for them; said, and refused, before it starts.
 Status checkDisk(const Scan& scan, std::uint64_t memoryBytes, const WorkFolder& folder,
                  ConvertResult& result) {
     std::uint64_t rows = scan.pointCount * (scan.schema.bytesPerPoint() + sizeof(Vec3<std::int32_t>));
     result.temporaryBytes = rows > memoryBytes ? rows : 0;
-    std::uint64_t free = folder.freeBytes();
-    if (result.temporaryBytes > free && !folder.resumes())
-        return Error{ErrorCode::writeFailed,
-                     cat("the points need ", rows >> 20, " MiB for the time being, but the disk has ",
-                         free >> 20, " MiB free"),
-                     folder.path(), "free space, name another folder with --temp, or allow more --memory"};
-    return {};
+    return folder.resumes() ? Status{} : refuseFullDisk(rows, memoryBytes, folder.path());
 }
 
 Error ofOutput(Error error, const std::string& output) {
@@ -170,7 +156,7 @@ class Conversion {
     Conversion(const std::vector<std::string>& inputs, const std::string& output,
                const ConvertOptions& options, const ConvertProgress& progress)
         : inputs_(inputs), output_(output), options_(options), progress_(progress),
-          threads_(threadCount(options.threads)), memoryBytes_(memoryFor(options)) {}
+          threads_(threadCount(options.threads)), memoryBytes_(memoryForPoints(options.memoryBytes)) {}
 
     Result<ConvertResult> run() {
         result_.output = output_;

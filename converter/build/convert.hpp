@@ -37,10 +37,9 @@ struct ConvertOptions {
     InputOptions input = {};
     Sampling sampling = Sampling::poisson; // how points of coarse nodes are chosen
     int threads = 0;                       // 0: one for each core
-    // For points, at least leastMemoryBytes; the process has up to 200 MB besides. 0: a quarter of the
-    // machine's.
+    // For points, at least leastMemoryBytes (memory_share.hpp); the process has up to 200 MB besides. 0: a
+    // quarter of the machine's.
     std::uint64_t memoryBytes = 0;
-    static constexpr std::uint64_t leastMemoryBytes = std::uint64_t{1} << 26;
     std::string temp = {}; // folder for what does not fit memory, and checkpoints; empty: beside the output
     // A cloud that the inputs are added to; may be the output, which is replaced when all is done. A source
     // that it has already (name, points and size) is refused.

@@ -251,29 +251,35 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
     return scan;
 }
 
-std::vector<std::string> mapOnto(Scan& scan, const Grid& grid, const Schema& schema) {
-    std::vector<std::string> different;
+std::vector<UnmatchedAttribute> mapOnto(Scan& scan, const Grid& grid, const Schema& schema) {
+    std::vector<UnmatchedAttribute> unmatched;
+    std::vector<int> merged(schema.attributes.size(), -1); // for each of the cloud's: index in the scan's
     for (std::size_t a = 0; a < scan.schema.attributes.size(); ++a) {
         const Attribute& wanted = scan.schema.attributes[a];
         int found = schema.find(wanted.name);
-        if (found < 0 || !sameMeaning(schema.attributes[static_cast<std::size_t>(found)], wanted))
-            different.push_back(wanted.name);
+        if (found >= 0 && sameMeaning(schema.attributes[static_cast<std::size_t>(found)], wanted)) {
+            merged[static_cast<std::size_t>(found)] = static_cast<int>(a);
+            continue;
+        }
+        UnmatchedAttribute attribute{wanted.name, found < 0, {}};
+        for (const ScannedInput& input : scan.inputs) {
+            int source = input.attributeSources[a];
+            attribute.sources.push_back(source);
+            if (source >= static_cast<int>(input.description().imposedAttributes))
+                attribute.imposed = false;
+        }
+        unmatched.push_back(std::move(attribute));
     }
     for (ScannedInput& input : scan.inputs) {
-        std::vector<int> sources(schema.attributes.size(), -1);
-        for (std::size_t a = 0; a < schema.attributes.size(); ++a) {
-            const Attribute& attribute = schema.attributes[a];
-            int merged = scan.schema.find(attribute.name);
-            if (merged >= 0 &&
-                std::find(different.begin(), different.end(), attribute.name) == different.end())
-                sources[a] = input.attributeSources[static_cast<std::size_t>(merged)];
-        }
+        std::vector<int> sources;
+        for (int a : merged)
+            sources.push_back(a < 0 ? -1 : input.attributeSources[static_cast<std::size_t>(a)]);
         input.attributeSources = std::move(sources);
         input.toCloud = gridMap(input.description().grid, grid);
     }
     scan.grid = grid;
     scan.schema = schema;
-    return different;
+    return unmatched;
 }
 
 } // namespace stipple

@@ -46,8 +46,16 @@ struct ScanOptions {
 // how exactly.
 Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions& options);
 
+// An attribute of the inputs that a cloud lacks, or has with another type or scale.
+struct UnmatchedAttribute {
+    std::string name;
+    // The cloud has none of that name, and every input that has it is of a format that can't leave it out.
+    bool imposed = false;
+    std::vector<int> sources; // for each input: index in its own schema, or -1
+};
+
 // Lets the scanned points be read as points of another cloud (to compare with it). Attributes go by name;
-// those that the cloud lacks, or has with another type or scale, are returned by name.
-std::vector<std::string> mapOnto(Scan& scan, const Grid& grid, const Schema& schema);
+// those that the cloud has no equal of are returned, and left out.
+std::vector<UnmatchedAttribute> mapOnto(Scan& scan, const Grid& grid, const Schema& schema);
 
 } // namespace stipple

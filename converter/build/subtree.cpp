@@ -1,6 +1,6 @@
 #include "converter/build/subtree.hpp"
 
-#include "converter/build/morton_order.hpp"
+#include "converter/build/morton.hpp"
 
 #include <algorithm>
 

@@ -114,10 +114,4 @@ Result<std::unique_ptr<ScratchFile>> WorkFolder::scratch(const std::string& name
     return file;
 }
 
-std::uint64_t WorkFolder::freeBytes() const {
-    std::error_code failed;
-    fs::space_info space = fs::space(path_, failed);
-    return failed ? ~std::uint64_t{0} : space.available;
-}
-
 } // namespace stipple

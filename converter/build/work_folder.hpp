@@ -40,9 +40,6 @@ class WorkFolder {
     // `reopen`, else a new one.
     Result<std::unique_ptr<ScratchFile>> scratch(const std::string& name, bool reopen);
 
-    // Free bytes on its disk.
-    std::uint64_t freeBytes() const;
-
     void keep() { keep_ = true; }
 
   private:

@@ -74,6 +74,7 @@ class LasInput final : public PointInput {
                     las.reader->pointCount(), las.source->sizeBytes()};
         d.grid = header.grid;
         d.schema = las.reader->schema();
+        d.imposedAttributes = las::schemaOf(header.pointFormat).attributes.size();
         d.warnings = las.reader->warnings();
         if (!isUsable(d.grid))
             return Error{ErrorCode::corrupt, "a scale factor or offset of the header is no usable number",

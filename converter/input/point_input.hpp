@@ -45,7 +45,10 @@ struct InputDescription {
     SourceFile source; // name, format in words, points to come (dropped ones not counted), size
     Grid grid;         // scales finite and > 0, offsets finite
     Schema schema;     // names of LAS where the meaning is that of LAS
-    Crs crs;           // not known() where the file states none
+    // The first so many of the schema are there because the format can't leave them out (LAS: the fields of
+    // the point format), whether or not somebody gave them a value.
+    std::size_t imposedAttributes = 0;
+    Crs crs; // not known() where the file states none
     // Bounds of the points in grid integers; empty where the file has no points or states none.
     BoxI bounds;
     // The bounds come from reading every point, or from the header's own statement, which may lie.

@@ -165,13 +165,7 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
         "--crs", arguments->options.crs,
         "Coordinate reference system of the cloud, for example EPSG:26910: inputs in another are "
         "reprojected, inputs that state none are taken to be in it");
-    verb->add_option("--threads", arguments->options.threads, "Threads to use (default: one for each core)")
-        ->check(CLI::Range(1, 1024));
-    verb->add_option("--memory", arguments->options.memoryBytes,
-                     "Memory to use, for example 2G; what does not fit goes to disk (default: a quarter of "
-                     "the machine's)")
-        ->transform(CLI::AsSizeValue(false))
-        ->check(CLI::Range(ConvertOptions::leastMemoryBytes, std::uint64_t{1} << 50));
+    cli::addResourceOptions(*verb, arguments->options.threads, arguments->options.memoryBytes);
     verb->add_option("--temp", arguments->options.temp,
                      "Folder for temporary files and checkpoints (default: beside the output)");
     verb->add_option(

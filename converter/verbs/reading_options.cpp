@@ -1,5 +1,7 @@
 #include "converter/verbs/reading_options.hpp"
 
+#include "converter/build/memory_share.hpp"
+
 namespace stipple::cli {
 
 void addReadingOptions(CLI::App& verb, InputOptions& reading) {
@@ -8,6 +10,16 @@ void addReadingOptions(CLI::App& verb, InputOptions& reading) {
     verb.add_option("--scale", reading.scale,
                     "Grid step for inputs of floating-point coordinates (default: by what they hold)")
         ->check(CLI::PositiveNumber);
+}
+
+void addResourceOptions(CLI::App& verb, int& threads, std::uint64_t& memoryBytes) {
+    verb.add_option("--threads", threads, "Threads to use (default: one for each core)")
+        ->check(CLI::Range(1, 1024));
+    verb.add_option("--memory", memoryBytes,
+                    "Memory to use, for example 2G; what does not fit goes to disk (default: a quarter of "
+                    "the machine's)")
+        ->transform(CLI::AsSizeValue(false))
+        ->check(CLI::Range(leastMemoryBytes, std::uint64_t{1} << 50));
 }
 
 } // namespace stipple::cli

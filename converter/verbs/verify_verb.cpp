@@ -16,8 +16,7 @@ namespace {
 struct VerifyArguments {
     std::string file;
     std::vector<std::string> inputs;
-    InputOptions reading;
-    int threads = 0;
+    VerifyOptions options;
     bool json = false;
 };
 
@@ -31,7 +30,9 @@ cli::Json comparisonJson(const VerifyReport& report) {
     json["changedPerAttribute"] = cli::Json::object();
     for (std::size_t a = 0; a < report.attributeNames.size(); ++a)
         json["changedPerAttribute"][report.attributeNames[a]] = comparison.changedPerAttribute[a];
-    json["first"] = comparison.first;
+    json["first"] = cli::Json::array();
+    for (const Comparison::Difference& difference : comparison.first)
+        json["first"].push_back(difference.text);
     return json;
 }
 
@@ -46,6 +47,7 @@ cli::Json reportJson(const std::string& file, const VerifyReport& report) {
                       {"faultCount", report.faultCount}};
     json["faults"] = report.faults;
     json["warnings"] = report.warnings;
+    json["notes"] = report.notes;
     json["comparison"] = comparisonJson(report);
     return json;
 }
@@ -64,13 +66,15 @@ void printComparison(const VerifyReport& report) {
         if (comparison.changedPerAttribute[a] > 0)
             fmt::print("  {} differs in {} points\n", report.attributeNames[a],
                        comparison.changedPerAttribute[a]);
-    for (const std::string& difference : comparison.first)
-        fmt::print("  {}\n", difference);
+    for (const Comparison::Difference& difference : comparison.first)
+        fmt::print("  {}\n", difference.text);
 }
 
 void printText(const std::string& file, const VerifyReport& report) {
     for (const std::string& warning : report.warnings)
         fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& note : report.notes)
+        fmt::print("note: {}\n", note);
     for (const std::string& fault : report.faults)
         fmt::print("fault: {}\n", fault);
     if (report.faultCount > report.faults.size())
@@ -83,17 +87,17 @@ void printText(const std::string& file, const VerifyReport& report) {
     fmt::print("{}\n", report.passed() ? "passed" : "FAILED");
 }
 
-int runVerify(const VerifyArguments& arguments) {
+int runVerify(VerifyArguments& arguments) {
     auto inputs = expandInputs(arguments.inputs, arguments.file);
     if (!inputs)
         return cli::fail("verify", inputs.error());
     cli::Progress bar(arguments.json ? cli::ProgressStyle::none : cli::ProgressStyle::text);
-    auto report = verifyFile(
-        arguments.file, inputs->paths, arguments.threads, cli::stopOnInterrupt(),
-        [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
-            bar.update(phase, done, total);
-        },
-        arguments.reading);
+    arguments.options.stop = cli::stopOnInterrupt();
+    arguments.options.temporaryBytes = &bar.temporaryBytes;
+    auto report = verifyFile(arguments.file, inputs->paths, arguments.options,
+                             [&](const std::string& phase, std::uint64_t done, std::uint64_t total) {
+                                 bar.update(phase, done, total);
+                             });
     bar.finish();
     if (!report)
         return cli::fail("verify", report.error());
@@ -113,9 +117,11 @@ void addVerifyVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("--against", arguments->inputs,
                      "Scans, folders or patterns, as given to convert: prove that the file holds exactly "
                      "their points, every attribute equal");
-    cli::addReadingOptions(*verb, arguments->reading);
-    verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
-        ->check(CLI::Range(1, 1024));
+    cli::addReadingOptions(*verb, arguments->options.reading);
+    cli::addResourceOptions(*verb, arguments->options.threads, arguments->options.memoryBytes);
+    verb->add_option("--temp", arguments->options.temp,
+                     "Folder for what does not fit memory (default: that of FILE)")
+        ->check(CLI::ExistingDirectory);
     verb->add_flag("--json", arguments->json, "Print the report as one JSON object; no progress");
     verb->callback([arguments, &action] { action = [arguments] { return runVerify(*arguments); }; });
 }

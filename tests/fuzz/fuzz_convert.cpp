@@ -35,10 +35,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto converted = convertFiles({scan}, cloud, options, quiet);
     if (!converted)
         return 0;
-    auto report = verifyFile(cloud, {scan}, 1, nullptr, quiet);
+    auto report = verifyFile(cloud, {scan}, {.threads = 1}, quiet);
     if (!report)
         stopOn(report.error().sentence());
     if (!report->passed())
-        stopOn(report->faults.empty() ? report->comparison->first[0] : report->faults[0]);
+        stopOn(report->faults.empty() ? report->comparison->first[0].text : report->faults[0]);
     return 0;
 }

@@ -53,7 +53,7 @@ void checkNothingLost(const std::vector<TestScan>& scans) {
         INFO("memory for points: " << memoryBytes);
         ConvertResult result = convertOrFail(inputs, folder / "out.stipple", pieces(memoryBytes));
         CHECK(result.metadata.pointCount == count);
-        auto report = verifyFile(folder / "out.stipple", inputs, 2, nullptr, noProgress);
+        auto report = verifyFile(folder / "out.stipple", inputs, {.threads = 2}, noProgress);
         REQUIRE(report.ok());
         INFO((report->faults.empty() ? "" : report->faults[0]));
         CHECK(report->passed());

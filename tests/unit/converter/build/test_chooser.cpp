@@ -180,7 +180,7 @@ TEST_CASE("every method keeps every point, and the file says which it was", "[sa
         ConvertResult result = convertOrFail({folder / "in.las"}, folder / "c.stipple", options);
         CHECK(result.metadata.options.find(
                   cat("sampling=", samplingNames[static_cast<std::size_t>(sampling)], " ")) == 0);
-        auto report = verifyFile(folder / "c.stipple", {folder / "in.las"}, 2, nullptr, noProgress);
+        auto report = verifyFile(folder / "c.stipple", {folder / "in.las"}, {.threads = 2}, noProgress);
         REQUIRE(report.ok());
         INFO((report->faults.empty() ? "" : report->faults[0]));
         CHECK(report->passed());

@@ -40,7 +40,7 @@ void convertAndVerify(const TestScan& scan) {
     writeScan(scan, folder / "in.las");
     ConvertResult result = convertOrFail({folder / "in.las"}, folder / "out.stipple");
     CHECK(result.metadata.pointCount == scan.points.size());
-    auto report = verifyFile(folder / "out.stipple", {folder / "in.las"}, 2, nullptr, noProgress);
+    auto report = verifyFile(folder / "out.stipple", {folder / "in.las"}, {.threads = 2}, noProgress);
     REQUIRE(report.ok());
     INFO((report->faults.empty() ? "" : report->faults[0]));
     CHECK(report->passed());
@@ -88,7 +88,7 @@ TEST_CASE("inputs of other formats and grids become one cloud with nothing lost"
     });
     CHECK(told);
     auto report =
-        verifyFile(folder / "out.stipple", {folder / "b.las", folder / "a.las"}, 1, nullptr, noProgress);
+        verifyFile(folder / "out.stipple", {folder / "b.las", folder / "a.las"}, {.threads = 1}, noProgress);
     REQUIRE(report.ok());
     CHECK(report->passed());
     CHECK(report->points == 11000);
@@ -131,7 +131,7 @@ TEST_CASE("clouds wider than 2^31 steps have wide nodes without points", "[conve
     ConvertResult result = convertOrFail({folder / "a.las", folder / "b.las"}, folder / "out.stipple");
     CHECK(result.metadata.rootCube.bits == 37);
     auto report =
-        verifyFile(folder / "out.stipple", {folder / "a.las", folder / "b.las"}, 1, nullptr, noProgress);
+        verifyFile(folder / "out.stipple", {folder / "a.las", folder / "b.las"}, {.threads = 1}, noProgress);
     REQUIRE(report.ok());
     INFO((report->faults.empty() ? "" : report->faults[0]));
     CHECK(report->passed());

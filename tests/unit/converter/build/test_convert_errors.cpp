@@ -151,7 +151,7 @@ TEST_CASE("a stopped conversion is cancelled and leaves nothing", "[convert]") {
 TEST_CASE("verify and export refuse what is no cloud", "[convert]") {
     TemporaryFolder folder;
     writeScan(surfaceScan(0, 100, 1), folder / "in.las");
-    auto verified = verifyFile(folder / "in.las", {}, 1, nullptr, noProgress);
+    auto verified = verifyFile(folder / "in.las", {}, {.threads = 1}, noProgress);
     REQUIRE_FALSE(verified.ok());
     CHECK(verified.error().sentence().find("in.las") != std::string::npos);
     auto exported = exportFile(folder / "in.las", folder / "out.las", {}, noProgress);

@@ -1,6 +1,6 @@
 #include "converter/build/disk_sampler.hpp"
 #include "converter/build/disk_thinning.hpp"
-#include "converter/build/morton_order.hpp"
+#include "converter/build/morton.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

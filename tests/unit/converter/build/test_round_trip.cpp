@@ -1,28 +1,47 @@
 #include "converter/build/compare.hpp"
-#include "converter/build/read_points.hpp"
+#include "converter/build/input_parts.hpp"
 #include "converter/build/verify.hpp"
 #include "converter/export/export_file.hpp"
 #include "shared/base/text.hpp"
 #include "tests/unit/converter/build/test_scan.hpp"
 
+#include <numeric>
+
 using namespace stipple;
 using namespace stipple::test;
 
 namespace {
+// All points as rows.
+Bytes rowsOf(const Scan& scan, const RowLayout& layout) {
+    Bytes rows;
+    PartReader reader{{}, {}, PointSums(scan.inputs.size())};
+    for (const PartRef& part : partsOf(scan)) {
+        Status read = readPart(scan, part, reader, [&](const PointBatch& batch) -> Status {
+            std::vector<std::uint32_t> all(batch.size());
+            std::iota(all.begin(), all.end(), 0u);
+            const std::size_t before = rows.size();
+            rows.resize(before + batch.size() * layout.rowBytes());
+            layout.pack(batch, all, rows.data() + before);
+            return {};
+        });
+        REQUIRE(read.ok());
+    }
+    CHECK(reader.sums.maxGridError == 0);
+    return rows;
+}
+
 // What verify --against does, for two LAS files.
 Comparison compareLas(const std::string& a, const std::string& b) {
     auto scanA = scanInputs({a}, {}), scanB = scanInputs({b}, {});
     REQUIRE(scanA.ok());
     REQUIRE(scanB.ok());
     CHECK(mapOnto(*scanB, scanA->grid, scanA->schema).empty());
-    auto pointsA = readPoints(*scanA, 1, nullptr, noProgress),
-         pointsB = readPoints(*scanB, 1, nullptr, noProgress);
-    REQUIRE(pointsA.ok());
-    REQUIRE(pointsB.ok());
-    CHECK(pointsB->sums.maxGridError == 0);
-    auto comparison = comparePoints(pointsA->store, pointsB->store, scanA->grid, scanA->schema, 1, nullptr);
-    REQUIRE(comparison.ok());
-    return *comparison;
+    RowLayout layout(scanA->schema, scanA->inputs[0].description().bounds);
+    Bytes rowsA = rowsOf(*scanA, layout), rowsB = rowsOf(*scanB, layout);
+    PointComparer comparer(layout, scanA->grid);
+    comparer.addFile(rowsA.data(), rowsA.size() / layout.rowBytes());
+    comparer.addInput(rowsB.data(), rowsB.size() / layout.rowBytes());
+    return comparer.finish();
 }
 
 Attribute extra(const std::string& name, AttributeType type) {
@@ -40,7 +59,7 @@ TEST_CASE("each point format goes through convert, verify and export with nothin
         TestScan scan = surfaceScan(format, 5000, static_cast<std::uint64_t>(format));
         writeScan(scan, folder / "in.las");
         convertOrFail({folder / "in.las"}, folder / "c.stipple");
-        auto report = verifyFile(folder / "c.stipple", {folder / "in.las"}, 2, nullptr, noProgress);
+        auto report = verifyFile(folder / "c.stipple", {folder / "in.las"}, {.threads = 2}, noProgress);
         REQUIRE(report.ok());
         INFO((report->faults.empty() ? "" : report->faults[0]));
         CHECK(report->passed());
@@ -105,7 +124,7 @@ TEST_CASE("integers beyond 32 bits are exported from another offset", "[roundtri
     REQUIRE(exported.ok());
     CHECK(exported->grid.offset.x != 0);
     CHECK(exported->grid.scale.x == 0.001);
-    auto report = verifyFile(folder / "c.stipple", {folder / "out.las"}, 1, nullptr, noProgress);
+    auto report = verifyFile(folder / "c.stipple", {folder / "out.las"}, {.threads = 1}, noProgress);
     REQUIRE(report.ok());
     CHECK(report->passed());
 }

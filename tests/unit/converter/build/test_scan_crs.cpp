@@ -111,7 +111,7 @@ TEST_CASE("a reprojected cloud is verified against its inputs as they are", "[cr
         convertOrFail({folder / "a.las", folder / "b.las"}, folder / "c.stipple", {.crs = "EPSG:3857"});
     CHECK(result.metadata.crs.epsg == 3857);
     auto report =
-        verifyFile(folder / "c.stipple", {folder / "b.las", folder / "a.las"}, 1, nullptr, noProgress);
+        verifyFile(folder / "c.stipple", {folder / "b.las", folder / "a.las"}, {.threads = 1}, noProgress);
     REQUIRE(report.ok());
     CHECK(report->passed());
     CHECK(report->comparison->equalPoints == 400);
