@@ -3,12 +3,15 @@
 #include "converter/build/convert.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/progress.hpp"
+#include "shared/format/cloud_file.hpp"
+#include "shared/io/file_source.hpp"
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -17,6 +20,7 @@ namespace stipple::server {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* cloudEnding = ".stipple";
 
 // A folder that only this user can write to, so that nobody else can put a file in the way.
 Result<std::string> privateFolder() {
@@ -32,19 +36,36 @@ Result<std::string> privateFolder() {
     return folder.string();
 }
 
+// What a cloud says of the scan that it was made of; nothing if it is no cloud, or was made of others.
+std::optional<SourceFile> sourceOf(const std::string& cloud, const std::string& scan) {
+    auto file = openFileSource(cloud);
+    if (!file)
+        return {};
+    auto reader = CloudReader::open(**file);
+    if (!reader)
+        return {};
+    const std::vector<SourceFile>& sources = (*reader)->metadata().sources;
+    if (sources.size() != 1 || sources[0].name != fs::path(scan).filename().string())
+        return {};
+    return sources[0];
+}
+
 } // namespace
 
 Result<std::string> convertedPath(const std::string& scan) {
     std::error_code problem;
-    fs::path whole = fs::absolute(scan, problem);
-    fs::path name = whole.stem();
-    name += ".stipple";
-    if (::access(whole.parent_path().c_str(), W_OK) == 0)
-        return (whole.parent_path() / name).string();
-    STIPPLE_TRY(folder, privateFolder());
-    // The same name in two folders must not be taken for the same scan.
-    std::size_t hash = std::hash<std::string>{}(whole.parent_path().string());
-    return (fs::path(folder) / cat(hash, "-", name.string())).string();
+    fs::path whole = fs::absolute(scan, problem), folder = whole.parent_path();
+    std::string before;
+    if (::access(folder.c_str(), W_OK) != 0) {
+        STIPPLE_TRY(ours, privateFolder());
+        // The same name in two folders must not be taken for the same scan.
+        before = cat(std::hash<std::string>{}(folder.string()), "-");
+        folder = ours;
+    }
+    fs::path plain = folder / cat(before, whole.stem().string(), cloudEnding);
+    if (!fs::exists(plain, problem) || sourceOf(plain.string(), scan))
+        return plain.string();
+    return (folder / cat(before, whole.filename().string(), cloudEnding)).string();
 }
 
 bool isUpToDate(const std::string& converted, const std::string& scan) {
@@ -53,14 +74,16 @@ bool isUpToDate(const std::string& converted, const std::string& scan) {
     if (problem)
         return false;
     auto scanned = fs::last_write_time(scan, problem);
-    return !problem && made >= scanned;
+    auto source = sourceOf(converted, scan);
+    return !problem && made >= scanned && source && source->sizeBytes == fs::file_size(scan, problem);
 }
 
 Result<std::string> prepareInput(const std::string& input, const std::atomic<bool>& stop) {
     std::error_code ignored;
     if (!fs::exists(input, ignored))
         return Error{ErrorCode::notFound, "there is no such file or folder", input, ""};
-    if (fs::is_directory(input, ignored) || fs::path(input).extension() == ".stipple")
+    if (fs::is_directory(input, ignored) || fs::path(input).extension() == cloudEnding ||
+        inputKindOf(input) == InputKind::cloud)
         return input;
     STIPPLE_TRY(output, convertedPath(input));
     if (isUpToDate(output, input))

@@ -53,9 +53,10 @@ void addViewVerb(CLI::App& program, cli::Action& action) {
         ->required();
     verb->add_flag("--open", options->opensBrowser, "Open the address in the browser");
     server::addServingOptions(*verb, options->serving);
-    verb->footer("A scan is converted to NAME.stipple beside it (in a temporary folder if that one can't be\n"
-                 "written), and only again once it is newer than that.\n"
-                 "Example: stipple view scan.las --open");
+    verb->footer(
+        "scan.las is converted to scan.stipple beside it (or scan.las.stipple, if that one was made of\n"
+        "another; in a temporary folder if theirs can't be written), and only again once it is newer.\n"
+        "Example: stipple view scan.las --open");
     verb->callback([options, &action] {
         action = [options] { return view(options->serving, options->inputs, options->opensBrowser); };
     });
