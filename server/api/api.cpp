@@ -1,5 +1,6 @@
 #include "server/api/api.hpp"
 
+#include "server/api/validity.hpp"
 #include "server/http/problem.hpp"
 #include "server/site/cloud_problem.hpp"
 #include "shared/base/text.hpp"
@@ -53,8 +54,8 @@ bool isApiPath(const Target& target) {
     return path.size() > prefixSegments && path[0] == "api" && path[1] == "v1";
 }
 
-Answer answerApi(const HttpRequest& request, const Target& target, const CloudCatalog& catalog,
-                 const Visitor& visitor, std::int64_t nowSeconds) {
+Answer answerApi(const HttpRequest& request, const Target& target, const ApiContext& context,
+                 std::int64_t nowSeconds) {
     std::vector<std::string> names;
     auto segments = std::span(target.segments).subspan(prefixSegments);
     auto endpoint = std::find_if(endpoints().begin(), endpoints().end(), [&](const Endpoint& candidate) {
@@ -68,13 +69,16 @@ Answer answerApi(const HttpRequest& request, const Target& target, const CloudCa
     if (Status known = checkNames(*query, endpoint->parameters); !known)
         return unknownParameterProblem(known.error());
 
-    ApiCall call{request, *query, std::move(names), "", nullptr, nowSeconds, catalog, visitor};
+    ApiCall call{request,         *query,          std::move(names), "", nullptr, nowSeconds,
+                 context.visitor, context.catalog, context.resources};
     if (endpoint->path.starts_with("/clouds/{id}")) {
         call.id = call.names.front();
-        auto cloud = catalog.current(call.id);
+        auto cloud = context.catalog.current(call.id);
         if (!cloud)
             return cloudProblem(cloud.error());
         call.cloud = *cloud;
+        if (auto gone = goneVersion(call))
+            return *gone;
     }
     return endpoint->answer(call);
 }

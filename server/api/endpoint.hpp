@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/access/visitor.hpp"
+#include "server/api/api_resources.hpp"
 #include "server/api/parameter.hpp"
 #include "server/http/job.hpp"
 #include "server/http/message.hpp"
@@ -17,8 +18,9 @@
 
 namespace stipple::server {
 
-// A GET or HEAD of an endpoint. Everything it refers to outlives the look-up, not a job: jobs copy what they
-// need (`cloud` above all, which keeps this version of the file open).
+// A GET or HEAD of an endpoint, by someone who may make it. All of it outlives the look-up, but only
+// `resources` and `catalog` outlive a job: jobs copy what else they need (`cloud` above all, which keeps
+// this version of the file open).
 struct ApiCall {
     const HttpRequest& request;
     const Query& query;             // has no parameter but those of the endpoint
@@ -27,8 +29,9 @@ struct ApiCall {
     std::string id;
     std::shared_ptr<const CloudVersion> cloud;
     std::int64_t nowSeconds = 0; // since 1970
+    const Visitor& visitor;      // who asks; may read `cloud`
     const CloudCatalog& catalog;
-    const Visitor& visitor; // who asks; may read `cloud`
+    ApiResources& resources;
 };
 
 struct Endpoint {

@@ -1,5 +1,7 @@
 #include "server/api/api.hpp"
 #include "server/api/cloud_endpoints.hpp"
+#include "server/api/hierarchy_endpoint.hpp"
+#include "server/api/node_endpoint.hpp"
 
 #include <array>
 
@@ -9,6 +11,8 @@ std::span<const Endpoint> endpoints() {
     static constexpr std::array table{
         Endpoint{"/clouds", answerClouds},
         Endpoint{"/clouds/{id}", answerCloud},
+        Endpoint{"/clouds/{id}/hierarchy/{key}", answerHierarchy, hierarchyParameters},
+        Endpoint{"/clouds/{id}/nodes/{key}", answerNode, nodeParameters},
         Endpoint{"/problems/{name}", answerProblemType},
     };
     return table;

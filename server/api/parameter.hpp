@@ -23,11 +23,26 @@ struct Parameter {
     std::string_view name;
     std::string_view description; // for people; what is so where it is not given
     ParameterKind kind = ParameterKind::text;
-    double least = 0, most = 0;                     // count, number; whole numbers below 2^53
+    double least = 0, most = 0;                     // count (below 2^53), number
     std::string_view form = {};                     // numbers: "x,y,z|x,y" (query.hpp)
     std::span<const std::string_view> choices = {}; // choice
     std::string_view example = {};                  // a value that any cloud answers
     bool isRequired = false;
 };
+
+// The getters of Query by a row.
+inline Result<std::optional<std::uint64_t>> countOf(const Query& query, const Parameter& parameter) {
+    return query.count(parameter.name, static_cast<std::uint64_t>(parameter.least),
+                       static_cast<std::uint64_t>(parameter.most));
+}
+inline Result<std::optional<double>> numberOf(const Query& query, const Parameter& parameter) {
+    return query.number(parameter.name, parameter.least, parameter.most);
+}
+inline Result<std::optional<std::vector<double>>> numbersOf(const Query& query, const Parameter& parameter) {
+    return query.numbers(parameter.name, parameter.form);
+}
+inline Result<std::optional<std::size_t>> choiceOf(const Query& query, const Parameter& parameter) {
+    return query.choice(parameter.name, parameter.choices);
+}
 
 } // namespace stipple::server

@@ -234,14 +234,14 @@ Result<std::optional<std::vector<double>>> Query::numbers(std::string_view name,
 }
 
 Result<std::optional<std::size_t>> Query::choice(std::string_view name,
-                                                 std::initializer_list<std::string_view> choices) const {
+                                                 std::span<const std::string_view> choices) const {
     const std::string* text = find(name);
     if (!text)
         return std::optional<std::size_t>();
-    const auto* place = std::find(choices.begin(), choices.end(), *text);
+    auto place = std::find(choices.begin(), choices.end(), *text);
     if (place == choices.end())
         return parameterError(name, cat(quotedValue(*text), " is not known"),
-                              cat("choose one of ", joined({choices.begin(), choices.size()})));
+                              cat("choose one of ", joined(choices)));
     return std::optional(static_cast<std::size_t>(place - choices.begin()));
 }
 

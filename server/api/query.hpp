@@ -56,7 +56,11 @@ class Query {
     Result<std::optional<std::vector<double>>> numbers(std::string_view name, std::string_view form) const;
     // Place in `choices`; letters count as written.
     Result<std::optional<std::size_t>> choice(std::string_view name,
-                                              std::initializer_list<std::string_view> choices) const;
+                                              std::span<const std::string_view> choices) const;
+    Result<std::optional<std::size_t>> choice(std::string_view name,
+                                              std::initializer_list<std::string_view> choices) const {
+        return choice(name, std::span(choices.begin(), choices.size()));
+    }
 
   private:
     std::vector<std::pair<std::string, std::string>> parameters_; // decoded, in the order given

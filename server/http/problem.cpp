@@ -59,6 +59,9 @@ const ProblemType noSuchNode{"no-such-node", 404, "No such node",
 const ProblemType notAcceptable{"not-acceptable", 406, "Not Acceptable",
                                 "None of the formats that the endpoint has is asked for; `available` has "
                                 "them all."};
+const ProblemType versionGone{"version-gone", 410, "Gone",
+                              "The cloud has been replaced since, and this version of it is gone; "
+                              "/api/v1/clouds/ID has the version that there is."};
 const ProblemType workTooLarge{"work-too-large", 400, "Too much work",
                                "The answer would take more than the server gives to one request; ask for "
                                "less."};
@@ -82,9 +85,10 @@ std::span<const ProblemType> problemTypes() {
     using namespace problem_types;
     static const std::vector<ProblemType> all = [] {
         std::vector<ProblemType> types(general.begin(), general.end());
-        types.insert(types.end(), {unknownParameter, invalidParameter, missingParameter, noSuchCloud,
-                                   noSuchNode, notAcceptable, workTooLarge, cloudUnusable, cloudChanged,
-                                   upstreamFailed, upstreamTimedOut, outOfTime, tooManyRequests});
+        types.insert(types.end(),
+                     {unknownParameter, invalidParameter, missingParameter, noSuchCloud, noSuchNode,
+                      notAcceptable, versionGone, workTooLarge, cloudUnusable, cloudChanged, upstreamFailed,
+                      upstreamTimedOut, outOfTime, tooManyRequests});
         return types;
     }();
     return all;

@@ -27,8 +27,8 @@ struct ProblemType {
 
 namespace problem_types {
 extern const ProblemType unknownParameter, invalidParameter, missingParameter, noSuchCloud, noSuchNode,
-    notAcceptable, workTooLarge, cloudUnusable, cloudChanged, upstreamFailed, upstreamTimedOut, outOfTime,
-    tooManyRequests;
+    notAcceptable, versionGone, workTooLarge, cloudUnusable, cloudChanged, upstreamFailed, upstreamTimedOut,
+    outOfTime, tooManyRequests;
 }
 
 // All of them: those above, and a general one for each status that is used.

@@ -17,23 +17,16 @@ BodyPart sliceOf(const Representation& representation, ByteRange range) {
     return text.substr(static_cast<std::size_t>(range.offset), static_cast<std::size_t>(range.size));
 }
 
-// What 200, 206, 304, 412 and 416 all repeat.
-void setValidatorFields(HttpResponse& response, const Representation& representation) {
-    response.set("ETag", representation.validators.etag);
-    if (representation.validators.lastModifiedSeconds != 0)
-        response.set("Last-Modified", httpDate(representation.validators.lastModifiedSeconds));
-    response.set("Cache-Control", representation.cacheControl);
+void setRangeFields(HttpResponse& response, const Representation& representation) {
     response.set("Accept-Ranges", "bytes");
     if (!representation.vary.empty())
         response.set("Vary", representation.vary);
 }
 
-HttpResponse problemWithValidators(int status, const std::string& detail,
-                                   const Representation& representation) {
-    HttpResponse response = problemResponse(status, detail);
-    setValidatorFields(response, representation);
-    response.set("Cache-Control", "no-store");
-    return response;
+// What 200, 206, 304, 412 and 416 all repeat.
+void setFields(HttpResponse& response, const Representation& representation) {
+    setValidatorFields(response, representation.validators, representation.cacheControl);
+    setRangeFields(response, representation);
 }
 
 // RFC 9110 §14.6. Any boundary that can't occur in a part's header will do: parts are delimited by their
@@ -75,20 +68,40 @@ std::uint64_t Representation::sizeBytes() const {
     return file ? (*file)->identity().sizeBytes : std::get<std::string>(content).size();
 }
 
-HttpResponse answerRepresentation(const HttpRequest& request, const Representation& representation,
-                                  std::int64_t nowSeconds) {
-    switch (evaluatePreconditions(request, representation.validators, nowSeconds)) {
-    case Precondition::failed:
-        return problemWithValidators(412, "this is not the version that the request asks for",
-                                     representation);
+void setValidatorFields(HttpResponse& response, const Validators& validators,
+                        const std::string& cacheControl) {
+    response.set("ETag", validators.etag);
+    if (validators.lastModifiedSeconds != 0)
+        response.set("Last-Modified", httpDate(validators.lastModifiedSeconds));
+    response.set("Cache-Control", cacheControl);
+}
+
+std::optional<HttpResponse> answerPreconditions(const HttpRequest& request, const Validators& validators,
+                                                const std::string& cacheControl, std::int64_t nowSeconds) {
+    switch (evaluatePreconditions(request, validators, nowSeconds)) {
+    case Precondition::failed: {
+        HttpResponse response = problemResponse(412, "this is not the version that the request asks for");
+        setValidatorFields(response, validators, "no-store");
+        return response;
+    }
     case Precondition::notModified: {
         HttpResponse response;
         response.status = 304;
-        setValidatorFields(response, representation);
+        setValidatorFields(response, validators, cacheControl);
         return response;
     }
     case Precondition::passed:
         break;
+    }
+    return std::nullopt;
+}
+
+HttpResponse answerRepresentation(const HttpRequest& request, const Representation& representation,
+                                  std::int64_t nowSeconds) {
+    if (auto answer = answerPreconditions(request, representation.validators, representation.cacheControl,
+                                          nowSeconds)) {
+        setRangeFields(*answer, representation);
+        return *answer;
     }
 
     std::uint64_t sizeBytes = representation.sizeBytes();
@@ -96,18 +109,18 @@ HttpResponse answerRepresentation(const HttpRequest& request, const Representati
     if (request.method == "GET" && rangeApplies(request, representation.validators, nowSeconds))
         ranges = resolveRanges(request.field("Range").value_or(""), sizeBytes);
     if (ranges.kind == RangeAnswerKind::unsatisfiable || ranges.kind == RangeAnswerKind::refused) {
-        HttpResponse response = problemWithValidators(
-            416,
-            ranges.kind == RangeAnswerKind::refused
-                ? cat("the range is malformed, or names more than ", maxRangesInRequest, " parts")
-                : cat("no byte of the ", sizeBytes, " lies in the range"),
-            representation);
+        HttpResponse response = problemResponse(
+            416, ranges.kind == RangeAnswerKind::refused
+                     ? cat("the range is malformed, or names more than ", maxRangesInRequest, " parts")
+                     : cat("no byte of the ", sizeBytes, " lies in the range"));
+        setFields(response, representation);
+        response.set("Cache-Control", "no-store");
         response.set("Content-Range", unsatisfiedRange(sizeBytes));
         return response;
     }
 
     HttpResponse response;
-    setValidatorFields(response, representation);
+    setFields(response, representation);
     response.set("Content-Type", representation.contentType);
     if (ranges.parts.size() <= 1 && !representation.contentCoding.empty())
         response.set("Content-Encoding", representation.contentCoding);

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -25,6 +26,13 @@ struct Representation {
                                  std::string cacheControl);
     std::uint64_t sizeBytes() const;
 };
+
+// 304 or 412 where the request's conditions say so; nothing: go on. `cacheControl` is that of the 304.
+std::optional<HttpResponse> answerPreconditions(const HttpRequest& request, const Validators& validators,
+                                                const std::string& cacheControl, std::int64_t nowSeconds);
+// ETag, Last-Modified and Cache-Control.
+void setValidatorFields(HttpResponse& response, const Validators& validators,
+                        const std::string& cacheControl);
 
 // 200, 206 (one part, or multipart/byteranges for several), 304, 412 or 416.
 HttpResponse answerRepresentation(const HttpRequest& request, const Representation& representation,

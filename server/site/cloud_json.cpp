@@ -30,7 +30,8 @@ Json summary(const NamedCloud& cloud) {
             {"pointCount", version->metadata.pointCount},
             {"bounds", boundsJson(version->metadata)},
             {"sizeBytes", version->sizeBytes()},
-            {"etag", version->validators.etag}};
+            {"etag", version->validators.etag},
+            {"version", version->version()}};
 }
 
 } // namespace

@@ -12,7 +12,7 @@ namespace stipple::server {
 using NamedCloud = std::pair<std::string, std::shared_ptr<const CloudVersion>>; // id, version
 
 // {"clouds": [{"id", "name", "address", "pointCount", "bounds": {"min": [x, y, z], "max": […]} or null,
-//              "sizeBytes", "etag"}]}
+//              "sizeBytes", "etag", "version"}]}
 std::string cloudListJson(const std::vector<NamedCloud>& clouds);
 
 // What the list says of a cloud, and "metadata": the file's own metadata document (docs/FORMAT.md).

@@ -105,7 +105,7 @@ Answer Site::routeRead(const HttpRequest& request, Target target, std::int64_t n
         return std::move(*refusal);
 
     if (isApiPath(target))
-        return answerApi(request, target, *catalog_, visitor, nowSeconds);
+        return answerApi(request, target, {*catalog_, *resources_, visitor}, nowSeconds);
     if (id)
         return answerFile(request, *id, nowSeconds);
     if (!target.segments.empty() && (target.segments[0] == "api" || target.segments[0] == "clouds"))

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "server/access/access_control.hpp"
+#include "server/api/api_resources.hpp"
 #include "server/http/cors.hpp"
 #include "server/http/handler.hpp"
 #include "server/http/target.hpp"
@@ -44,6 +45,7 @@ class Site final : public RequestHandler {
     HttpResponse answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const;
 
     std::unique_ptr<CloudCatalog> catalog_;
+    std::unique_ptr<ApiResources> resources_ = std::make_unique<ApiResources>();
     Page page_;
     std::unique_ptr<AccessControl> access_;
     CorsRules cors_;

@@ -33,6 +33,23 @@ Result<CloudMetadata> parseMetadata(ByteSpan block); // exactly FileHeader::meta
 Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata, std::uint64_t fileBytes,
                                                    ByteSpan block);
 
+// Which nodes a hierarchy chunk is about.
+struct ChunkPlace {
+    ByteRange range;
+    NodeKey parent;                   // whose children begin the chunk
+    std::uint8_t parentChildMask = 0; // 0: the root chunk, which begins with the root
+};
+inline ChunkPlace rootChunkPlace(const FileHeader& header) {
+    return {header.rootChunk, NodeKey{}, 0};
+}
+// Of the children of `entry`, if they are in a chunk of their own (entry.childChunk.size > 0).
+inline ChunkPlace childChunkPlace(const NodeEntry& entry) {
+    return {entry.childChunk, entry.key, entry.childMask};
+}
+// Reads and parses a chunk, waiting, and checks that it is about the nodes expected. Errors name the byte.
+Result<std::vector<NodeEntry>> readHierarchyChunk(ByteSource& source, const FileHeader& header,
+                                                  const CloudMetadata& metadata, const ChunkPlace& place);
+
 // Decodes the first `strata` strata (1..4) from their bytes (exactly entry.strataRange(strata)). Errors of
 // this and of decodeAttributes name the node, the block and its byte. Memory: bounded by entry.pointCount,
 // which is itself bounded by the bytes that came.

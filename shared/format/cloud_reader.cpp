@@ -11,6 +11,17 @@ namespace stipple {
 
 namespace {
 
+bool holdsChildren(const std::vector<NodeEntry>& nodes, const NodeKey& parent, std::uint8_t mask) {
+    std::size_t at = 0;
+    for (int c = 0; c < 8; ++c)
+        if ((mask >> c) & 1) {
+            if (at >= nodes.size() || nodes[at].key != parent.child(c))
+                return false;
+            ++at;
+        }
+    return true;
+}
+
 class Reader final : public CloudReader {
   public:
     explicit Reader(ByteSource& source) : source_(source) {}
@@ -40,22 +51,22 @@ class Reader final : public CloudReader {
     visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit) override {
         // A chunk is deeper than the one that names it, so a file whose chunks name each other in a circle
         // ends at the deepest level; the limit is for one that repeats itself sideways.
-        std::deque<Wanted> wanted{{header_.rootChunk, NodeKey{}, 0}};
+        std::deque<ChunkPlace> wanted{rootChunkPlace(header_)};
         HierarchyCounters counters;
         while (!wanted.empty()) {
-            Wanted next = wanted.front();
+            ChunkPlace next = wanted.front();
             wanted.pop_front();
             ++counters.chunksRead;
-            counters.bytesRead += next.chunk.size;
+            counters.bytesRead += next.range.size;
             if (counters.bytesRead > header_.fileBytes)
                 return Error{ErrorCode::corrupt, "the hierarchy chunks overlap", source_.name(), {}};
-            STIPPLE_TRY(nodes, readChunk(next));
+            STIPPLE_TRY(nodes, readHierarchyChunk(source_, header_, metadata_, next));
             for (const NodeEntry& node : nodes) {
                 STIPPLE_TRY(below, visit(node));
                 if (node.childChunk.size == 0)
                     continue;
                 if (below) {
-                    wanted.push_back({node.childChunk, node.key, node.childMask});
+                    wanted.push_back(childChunkPlace(node));
                 } else {
                     ++counters.chunksSkipped;
                     counters.bytesSkipped += node.childChunk.size;
@@ -96,36 +107,6 @@ class Reader final : public CloudReader {
     std::string sourceName() const override { return source_.name(); }
 
   private:
-    struct Wanted {
-        ByteRange chunk;
-        NodeKey parent;
-        std::uint8_t childMask; // 0: the root chunk
-    };
-
-    Result<std::vector<NodeEntry>> readChunk(const Wanted& wanted) {
-        std::string where = cat(source_.name(), ", byte ", wanted.chunk.offset);
-        STIPPLE_TRY(block, readNow(source_, wanted.chunk));
-        auto nodes = parseHierarchyChunk(metadata_, header_.fileBytes, block);
-        if (!nodes)
-            return nodes.error().at(where);
-        bool expected = wanted.childMask == 0 ? !nodes->empty() && nodes->front().key == NodeKey{}
-                                              : holdsChildren(*nodes, wanted.parent, wanted.childMask);
-        if (!expected)
-            return Error{ErrorCode::corrupt, "the hierarchy chunk is about other nodes", where, {}};
-        return nodes;
-    }
-
-    static bool holdsChildren(const std::vector<NodeEntry>& nodes, const NodeKey& parent, std::uint8_t mask) {
-        std::size_t at = 0;
-        for (int c = 0; c < 8; ++c)
-            if ((mask >> c) & 1) {
-                if (at >= nodes.size() || nodes[at].key != parent.child(c))
-                    return false;
-                ++at;
-            }
-        return true;
-    }
-
     ByteSource& source_;
     FileHeader header_;
     CloudMetadata metadata_;
@@ -153,6 +134,20 @@ void takeColour(const CloudMetadata& metadata, const NodeBytes& node, const Node
 }
 
 } // namespace
+
+Result<std::vector<NodeEntry>> readHierarchyChunk(ByteSource& source, const FileHeader& header,
+                                                  const CloudMetadata& metadata, const ChunkPlace& place) {
+    std::string where = cat(source.name(), ", byte ", place.range.offset);
+    STIPPLE_TRY(block, readNow(source, place.range));
+    auto nodes = parseHierarchyChunk(metadata, header.fileBytes, block);
+    if (!nodes)
+        return nodes.error().at(where);
+    bool expected = place.parentChildMask == 0 ? !nodes->empty() && nodes->front().key == NodeKey{}
+                                               : holdsChildren(*nodes, place.parent, place.parentChildMask);
+    if (!expected)
+        return Error{ErrorCode::corrupt, "the hierarchy chunk is about other nodes", where, {}};
+    return nodes;
+}
 
 std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<const int> attributes) {
     std::vector<AttributeBlock> all = attributeBlocks(metadata);

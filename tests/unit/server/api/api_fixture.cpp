@@ -7,6 +7,7 @@ namespace stipple::test {
 namespace {
 
 using namespace server;
+constexpr std::int64_t now = 1'700'000'000;
 
 void append(std::string& text, const HttpResponse& response) {
     for (const BodyPart& part : response.body) {
@@ -61,8 +62,8 @@ ApiAnswer ApiFixture::ask(const std::string& target, Fields fields, std::string_
     HttpRequest request{method, target, 11, std::move(fields)};
     auto parsed = parseTarget(request.target);
     REQUIRE(parsed.ok());
-    Answer answer = answerApi(request, *parsed, *catalog_,
-                              Visitor(nullptr, request, parsed->query, 1'700'000'000), 1'700'000'000);
+    Visitor visitor(nullptr, request, parsed->query, now);
+    Answer answer = answerApi(request, *parsed, {*catalog_, resources_, visitor}, now);
     ApiAnswer result;
     if (auto* job = std::get_if<Job>(&answer)) {
         Collector collector;

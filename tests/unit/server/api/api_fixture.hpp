@@ -32,12 +32,14 @@ class ApiFixture {
     ApiAnswer ask(const std::string& target, Fields fields = {}, std::string_view method = "GET") const;
 
     const SmallCloud& cloud() const { return cloud_; } // of id "small"
+    std::string version() const { return ask("/api/v1/clouds/small").json["version"]; }
     std::string path() const { return folder_.file("small.stipple"); }
 
   private:
     TemporaryFolder folder_;
     SmallCloud cloud_;
     std::unique_ptr<server::CloudCatalog> catalog_;
+    mutable server::ApiResources resources_;
 };
 
 } // namespace stipple::test

@@ -1,0 +1,29 @@
+// /clouds/{id}/nodes/{key}: the points of one node, or a prefix of them (strata), with some of their
+// attributes. As stored, these are the very bytes of the cloud's file (docs/FORMAT.md, "Nodes"), whose sizes
+// the hierarchy has; other formats hold decoded points in progressive order.
+#pragma once
+
+#include "server/api/endpoint.hpp"
+#include "server/api/node_request.hpp"
+#include "server/api/validity.hpp"
+#include "server/http/negotiation.hpp"
+
+#include <array>
+
+namespace stipple::server {
+
+inline constexpr std::array nodeFormats{
+    Format{"stored", "application/octet-stream", "bin"},
+    Format{"json", "application/json", "json"},
+};
+inline constexpr Parameter nodeFormatParameter{
+    .name = "format",
+    .description = "Goes before the field Accept.",
+    .example = "json",
+};
+inline constexpr std::array nodeParameters{strataParameter, attributesParameter, nodeFormatParameter,
+                                           versionParameter};
+
+Answer answerNode(const ApiCall& call);
+
+} // namespace stipple::server
