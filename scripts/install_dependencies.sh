@@ -7,13 +7,14 @@ cd "$(dirname "$0")/.."
 
 packages=(
   g++ cmake ninja-build ccache pkg-config clang-format git ca-certificates
-  libboost1.81-dev libzstd-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libtbb-dev
+  libboost1.81-dev libssl-dev openssl libzstd-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libtbb-dev
   libproj-dev proj-data libgeotiff-dev libpugixml-dev libpng-dev libegl-dev libgles-dev libegl1 libgles2 libgl1-mesa-dri
-  libssl-dev
   catch2 emscripten chromium
 )
 # The fuzzers are built with clang; scripts/fuzz.sh asks for them.
 [ "${1:-}" = --with-fuzzing ] && packages+=(clang libclang-rt-14-dev)
+# scripts/bench_server.sh compares with nginx.
+[ "${1:-}" = --with-server-bench ] && packages+=(wrk nginx openssl)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -137,20 +137,18 @@ const char* reasonPhrase(int status) {
     }
 }
 
-std::string responseHead(const HttpResponse& response, std::int64_t nowSeconds, bool keepsAlive,
-                         BodyFraming framing) {
-    std::string head;
-    head.reserve(1024);
-    head += cat("HTTP/1.1 ", response.status, " ", reasonPhrase(response.status), "\r\n");
-    head += cat("Date: ", httpDate(nowSeconds), "\r\nServer: stipple\r\n");
+void appendResponseHead(std::string& head, const HttpResponse& response, std::int64_t nowSeconds,
+                        bool keepsAlive, BodyFraming framing) {
+    auto append = [&head](auto... parts) { (head.append(parts), ...); };
+    append("HTTP/1.1 ", std::to_string(response.status), " ", reasonPhrase(response.status),
+           "\r\nDate: ", httpDate(nowSeconds), "\r\nServer: stipple\r\n");
     for (const auto& [name, value] : response.fields)
-        head.append(name).append(": ").append(value).append("\r\n");
+        append(name, ": ", std::string_view(value), "\r\n");
     if (framing == BodyFraming::chunked)
-        head += "Transfer-Encoding: chunked\r\n";
+        append("Transfer-Encoding: chunked\r\n");
     else if (framing == BodyFraming::length && response.status != 204 && response.status != 304)
-        head += cat("Content-Length: ", response.bodyBytes(), "\r\n");
-    head += keepsAlive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n";
-    return head;
+        append("Content-Length: ", std::to_string(response.bodyBytes()), "\r\n");
+    append(keepsAlive ? "Connection: keep-alive\r\n\r\n" : "Connection: close\r\n\r\n");
 }
 
 } // namespace stipple::server

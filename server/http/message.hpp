@@ -60,9 +60,9 @@ enum class BodyFraming {
     untilClose, // the end of the connection; for HTTP/1.0
 };
 
-// Status line and fields with Date, Content-Length (RFC 9110 §8.6: not with 204 and 304) or
+// Appends status line and fields with Date, Content-Length (RFC 9110 §8.6: not with 204 and 304) or
 // Transfer-Encoding, and Connection, up to and with the empty line.
-std::string responseHead(const HttpResponse& response, std::int64_t nowSeconds, bool keepsAlive,
-                         BodyFraming framing = BodyFraming::length);
+void appendResponseHead(std::string& head, const HttpResponse& response, std::int64_t nowSeconds,
+                        bool keepsAlive, BodyFraming framing);
 
 } // namespace stipple::server

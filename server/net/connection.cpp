@@ -4,197 +4,222 @@
 #include "server/net/job_answer.hpp"
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/beast/http/error.hpp>
+#include <boost/asio/post.hpp>
+#include <cstring>
 #include <ctime>
-#include <sys/socket.h>
 
 namespace stipple::server {
 
 namespace {
 
-namespace net = boost::asio;
-namespace http = boost::beast::http;
-using Tcp = net::ip::tcp;
-using Failure = boost::system::error_code;
-constexpr auto answered = net::as_tuple(net::use_awaitable);
 constexpr std::chrono::milliseconds lingerTime{1000};
 constexpr std::chrono::hours untilTheJobSays{24 * 365}; // it has limits of its own
-constexpr std::size_t readBytes = 4096;
-// Outcomes of readHeader beside the status of a refusal.
-constexpr int headerRead = 0, clientLeft = -1;
-
-// Status for bytes that the parser refused.
-int statusOf(const Failure& error) {
-    if (error == http::error::header_limit || error == http::error::buffer_overflow)
-        return 431;
-    return error == http::error::bad_version ? 505 : 400;
-}
-
-std::string_view view(boost::beast::string_view text) {
-    return {text.data(), text.size()};
-}
-
-template <class Message>
-HttpRequest requestOf(const Message& message) {
-    HttpRequest request;
-    request.method = view(message.method_string());
-    request.target = view(message.target());
-    request.version = static_cast<int>(message.version());
-    for (const auto& field : message)
-        request.fields.emplace_back(view(field.name_string()), view(field.value()));
-    return request;
-}
-
-bool wantsKeepAlive(const HttpRequest& request) {
-    if (request.version != 11)
-        return false;
-    std::string value = request.field("Connection").value_or("");
-    for (std::string_view rest = value; !rest.empty();) {
-        std::size_t comma = std::min(rest.find(','), rest.size());
-        if (equalIgnoringCase(trimmed(rest.substr(0, comma)), "close"))
-            return false;
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-    }
-    return true;
-}
+constexpr std::size_t firstReadBytes = 2048;            // most requests are shorter
+// A client that pipelines must not keep the other connections of its loop waiting.
+constexpr int answersInTurn = 16;
+// Outcomes of look() beside the status of a refusal.
+constexpr int needsMore = -1, headerRead = 0;
+constexpr int plainToTls = 1; // no status, but a 400 of its own
 
 } // namespace
 
-Connection::Connection(Loop& loop, Tcp::socket socket)
-    : loop_(loop), limits_(loop.state().limits), socket_(std::move(socket)),
-      buffer_(loop.state().limits.requestHeaderBytes) {
-    Failure ignored;
-    socket_.set_option(Tcp::no_delay(true), ignored);
-    socket_.native_non_blocking(true, ignored); // for sendfile
-    auto endpoint = socket_.remote_endpoint(ignored);
-    client_ = ignored ? "-" : endpoint.address().to_string();
-    allow(limits_.idle);
+Connection::Connection(Loop& loop, Socket socket, std::shared_ptr<const TlsContext> tls)
+    : loop_(loop), limits_(loop.state().limits), stream_(std::move(socket), std::move(tls)),
+      client_(stream_.clientAddress()) {
+    allow(limits_.header);
 }
 
 void Connection::close() {
-    Failure ignored;
-    socket_.close(ignored);
-}
-
-net::awaitable<void> Connection::run() {
-    for (bool goesOn = true; goesOn;) {
-        goesOn = co_await waitForRequest();
-        if (goesOn)
-            goesOn = co_await answerNext();
-    }
-    if (socket_.is_open())
-        co_await closeGently();
-    close();
-}
-
-net::awaitable<bool> Connection::waitForRequest() {
-    if (buffer_.size() > 0)
-        co_return true; // pipelined
-    if (loop_.isStopping())
-        co_return false;
-    isIdle_ = true;
-    allow(limits_.idle);
-    auto [error, size] = co_await socket_.async_read_some(
-        buffer_.prepare(std::min(readBytes, limits_.requestHeaderBytes)), answered);
-    buffer_.commit(size);
-    isIdle_ = false;
-    co_return !error;
-}
-
-// Beast bounds a single line of a header, not all of it, so the bytes are counted here: a header without end
-// must not fill the memory.
-net::awaitable<int> Connection::readHeader(RequestParser& parser) {
-    allow(limits_.header);
-    parser.header_limit(static_cast<std::uint32_t>(limits_.requestHeaderBytes));
-    parser.body_limit(boost::none); // bodies are refused by the rules, with a status of their own
-    std::size_t parsed = 0;
-    for (;;) {
-        Failure error;
-        std::size_t taken = parser.put(buffer_.data(), error);
-        buffer_.consume(taken);
-        parsed += taken;
-        if (error && error != http::error::need_more)
-            co_return statusOf(error);
-        if (parsed + (parser.is_header_done() ? 0 : buffer_.size()) >= limits_.requestHeaderBytes)
-            co_return 431;
-        if (parser.is_header_done())
-            co_return headerRead;
-        auto [problem, size] = co_await socket_.async_read_some(
-            buffer_.prepare(std::min(readBytes, limits_.requestHeaderBytes - buffer_.size())), answered);
-        buffer_.commit(size);
-        if (problem)
-            co_return clientLeft;
-    }
-}
-
-net::awaitable<bool> Connection::answerNext() {
-    RequestParser parser;
-    int status = co_await readHeader(parser);
-    if (status == clientLeft)
-        co_return false;
-    Exchange exchange;
-    if (status != headerRead) {
-        co_await sendWhole(exchange, unreadable(status));
+    if (phase_ == Phase::answering) {
+        stream_.reset();
     } else {
-        exchange.request = requestOf(parser.get());
-        exchange.keepsAlive = wantsKeepAlive(exchange.request);
-        Answer answer = loop_.state().handler->answer(exchange.request, std::time(nullptr));
-        if (auto* job = std::get_if<Job>(&answer))
-            co_await answerJob(exchange, std::move(*job));
-        else
-            co_await sendWhole(exchange, std::get<HttpResponse>(answer));
+        stream_.finish();
+        stream_.close();
     }
-    log(exchange);
-    if (!exchange.outcome.isComplete)
-        cut(); // short of Content-Length or of the last chunk, which is how the client sees it
-    co_return exchange.outcome.isComplete&& exchange.keepsAlive;
+}
+
+Task<void> Connection::run() {
+    for (bool goesOn = co_await begin(); goesOn;) {
+        int status = look();
+        if (status == needsMore) {
+            goesOn = co_await readMore();
+            continue;
+        }
+        startExchange(status);
+        if (auto* job = std::get_if<Job>(&answer_))
+            co_await answerJob(std::move(*job));
+        else if (!startSending())
+            co_await finishSending();
+        goesOn = endExchange();
+        if (goesOn && ++answeredInTurn_ >= answersInTurn) {
+            answeredInTurn_ = 0;
+            co_await net::post(loop_.context(), answered);
+        }
+    }
+    if (stream_.isOpen())
+        co_await closeGently();
+    stream_.close();
+}
+
+Task<bool> Connection::begin() {
+    bool isOpen = co_await stream_.open();
+    if (isOpen && stream_.spokePlainly()) {
+        startExchange(plainToTls);
+        if (!startSending())
+            co_await finishSending();
+        isOpen = endExchange();
+    }
+    if (isOpen) {
+        phase_ = Phase::idle;
+        allow(limits_.idle);
+    }
+    co_return isOpen;
+}
+
+// Waits for more of a request; its header has a deadline as a whole, from its first byte on.
+Task<bool> Connection::readMore() {
+    Received& in = received_;
+    if (in.begin == in.end) {
+        if (loop_.isStopping())
+            co_return false;
+        in.begin = in.end = 0;
+        if (in.bytes.size() != firstReadBytes)
+            in.bytes = std::vector<char>(firstReadBytes);
+        phase_ = Phase::idle;
+    } else if (in.end == in.bytes.size()) {
+        std::memmove(in.bytes.data(), in.bytes.data() + in.begin, in.end - in.begin);
+        in.end -= in.begin;
+        in.begin = 0;
+        if (in.end == in.bytes.size())
+            in.bytes.resize(std::min(2 * in.end, limits_.requestHeaderBytes));
+    }
+    answeredInTurn_ = 0;
+    std::size_t count = co_await stream_.readSome(in.bytes.data() + in.end, in.bytes.size() - in.end);
+    in.end += count;
+    if (phase_ == Phase::idle && count > 0) {
+        phase_ = Phase::header;
+        allow(limits_.header);
+    }
+    co_return count > 0;
+}
+
+int Connection::look() {
+    HeaderScan::State state = scan_.scan(received_.view());
+    if (state == HeaderScan::State::malformed)
+        return 400;
+    std::size_t size = state == HeaderScan::State::complete ? scan_.endBytes() : received_.view().size();
+    if (size >= limits_.requestHeaderBytes)
+        return scan_.isInRequestLine() ? 414 : 431;
+    if (state == HeaderScan::State::needsMore)
+        return needsMore;
+    return parseRequestHeader(scan_.header(received_.view()), exchange_.request);
+}
+
+void Connection::startExchange(int status) {
+    phase_ = Phase::answering;
+    allow(limits_.noProgress);
+    exchange_.begin = Clock::now();
+    exchange_.job.clear();
+    exchange_.status = 499;
+    exchange_.outcome = {};
+    exchange_.keepsAlive = false;
+    if (status != headerRead) {
+        answer_ = unreadable(status);
+        return;
+    }
+    exchange_.keepsAlive = wantsKeepAlive(exchange_.request);
+    answer_ = loop_.state().handler->answer(exchange_.request, std::time(nullptr));
 }
 
 HttpResponse Connection::unreadable(int status) const {
-    const char* detail = status == 431   ? "the header is too large"
-                         : status == 505 ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
-                                         : "this is not an HTTP request";
-    HttpResponse response = problemResponse(status, detail);
+    const char* detail = status == plainToTls ? "this address is https, and the request was plain http"
+                         : status == 414      ? "the target is too long"
+                         : status == 431      ? "the header is too large"
+                         : status == 505      ? "only HTTP/1.0 and HTTP/1.1 are spoken here"
+                                              : "this is not an HTTP request";
+    HttpResponse response = problemResponse(status == plainToTls ? 400 : status, detail);
     loop_.state().handler->complete(HttpRequest(), response);
     return response;
 }
 
-net::awaitable<void> Connection::sendWhole(Exchange& exchange, const HttpResponse& response) {
-    exchange.status = response.status;
-    exchange.keepsAlive = exchange.keepsAlive && !response.closes && !loop_.isStopping();
-    std::string head = responseHead(response, std::time(nullptr), exchange.keepsAlive);
-    exchange.outcome = co_await sendResponse(loop_, socket_, std::move(head), response,
-                                             [this] { allow(limits_.noProgress); });
+bool Connection::startSending() {
+    const auto& response = std::get<HttpResponse>(answer_);
+    exchange_.status = response.status;
+    exchange_.keepsAlive = exchange_.keepsAlive && !response.closes && !loop_.isStopping();
+    head_.clear();
+    appendResponseHead(head_, response, std::time(nullptr), exchange_.keepsAlive, BodyFraming::length);
+    sender_.emplace(stream_, loop_.buffers(), head_, response);
+    if (sender_->step() != ResponseSender::Step::done)
+        return false;
+    endSending();
+    return true;
 }
 
-net::awaitable<void> Connection::answerJob(Exchange& exchange, Job job) {
-    exchange.job = job.kind;
-    bool headOnly = exchange.request.method == "HEAD";
+Task<void> Connection::finishSending() {
+    auto step = ResponseSender::Step::pause;
+    for (std::uint64_t renewedAt = 0; step != ResponseSender::Step::done; step = sender_->step()) {
+        if (sender_->outcome().bodyBytes - renewedAt >= ResponseSender::stepBytes) {
+            renewedAt = sender_->outcome().bodyBytes;
+            allow(limits_.noProgress);
+        }
+        if (step == ResponseSender::Step::wait)
+            co_await stream_.wait(sender_->waitsFor());
+        else
+            co_await net::post(loop_.context(), answered);
+    }
+    endSending();
+}
+
+void Connection::endSending() {
+    exchange_.outcome = sender_->outcome();
+    sender_.reset();
+}
+
+Task<void> Connection::answerJob(Job job) {
+    exchange_.job = job.kind;
+    bool headOnly = exchange_.request.method == "HEAD";
     allow(untilTheJobSays);
-    JobAnswer answer(loop_, socket_, client_, std::move(job), headOnly);
-    std::optional<HttpResponse> response = co_await answer.wait();
+    JobAnswer jobAnswer(loop_, stream_, client_, std::move(job), headOnly);
+    std::optional<HttpResponse> response = co_await jobAnswer.wait();
     if (!response)
         co_return;
-    loop_.state().handler->complete(exchange.request, *response);
-    if (!answer.isStreamed()) {
-        co_await sendWhole(exchange, *response);
+    loop_.state().handler->complete(exchange_.request, *response);
+    allow(limits_.noProgress);
+    answer_ = std::move(*response);
+    if (!jobAnswer.isStreamed()) {
+        if (!startSending())
+            co_await finishSending();
         co_return;
     }
-    exchange.status = response->status;
-    BodyFraming framing = exchange.request.version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
-    exchange.keepsAlive =
-        exchange.keepsAlive && framing == BodyFraming::chunked && !response->closes && !loop_.isStopping();
-    std::string head = responseHead(*response, std::time(nullptr), exchange.keepsAlive, framing);
-    auto onProgress = [this] { allow(limits_.noProgress); };
+    const auto& head = std::get<HttpResponse>(answer_);
+    exchange_.status = head.status;
+    BodyFraming framing = exchange_.request.version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
+    exchange_.keepsAlive =
+        exchange_.keepsAlive && framing == BodyFraming::chunked && !head.closes && !loop_.isStopping();
+    head_.clear();
+    appendResponseHead(head_, head, std::time(nullptr), exchange_.keepsAlive, framing);
     if (headOnly)
-        exchange.outcome = co_await sendResponse(loop_, socket_, std::move(head), *response, onProgress);
+        exchange_.outcome.isComplete = co_await stream_.writeAll(head_);
     else
-        exchange.outcome = co_await answer.sendBody(std::move(head), framing, onProgress);
+        exchange_.outcome =
+            co_await jobAnswer.sendBody(head_, framing, [this] { allow(limits_.noProgress); });
 }
 
-void Connection::log(const Exchange& exchange) const {
+bool Connection::endExchange() {
+    log();
+    answer_ = HttpResponse(); // closes its files
+    if (!exchange_.outcome.isComplete) {
+        stream_.reset(); // short of Content-Length or of the last chunk, which is how the client sees it
+        return false;
+    }
+    received_.begin += std::min(scan_.endBytes(), received_.view().size());
+    scan_ = HeaderScan();
+    phase_ = Phase::header;
+    allow(received_.begin == received_.end ? limits_.idle : limits_.header);
+    return exchange_.keepsAlive;
+}
+
+void Connection::log() const {
     ServerState& state = loop_.state();
     if (!state.log)
         return;
@@ -202,38 +227,27 @@ void Connection::log(const Exchange& exchange) const {
     RequestRecord record;
     record.timeMs = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
     record.client = client_;
-    record.method = exchange.request.method;
-    record.target = exchange.request.target;
-    record.range = exchange.request.field("Range").value_or("");
-    record.job = exchange.job;
-    record.status = exchange.status;
-    record.bodyBytes = exchange.outcome.bodyBytes;
-    record.milliseconds = duration<double, std::milli>(Clock::now() - exchange.begin).count();
-    record.isComplete = exchange.outcome.isComplete;
+    record.method = exchange_.request.method;
+    record.target = exchange_.request.target;
+    record.range = exchange_.request.field("Range").value_or("");
+    record.job = exchange_.job;
+    record.status = exchange_.status;
+    record.bodyBytes = exchange_.outcome.bodyBytes;
+    record.milliseconds = duration<double, std::milli>(Clock::now() - exchange_.begin).count();
+    record.isComplete = exchange_.outcome.isComplete;
     std::lock_guard lock(state.logMutex);
     state.log(record);
 }
 
-// A reset, not an orderly end: where an answer reaches until the end of the connection, that is the only
-// difference between a whole one and half of one.
-void Connection::cut() {
-    Failure ignored;
-    socket_.set_option(net::socket_base::linger(true, 0), ignored);
-    close();
-}
-
 // Closing a socket with unread bytes resets the connection, and the client may lose the answer that it has
 // not read yet (RFC 9112 §9.6): say that no more comes, then read what the client still sends, for a moment.
-net::awaitable<void> Connection::closeGently() {
-    Failure problem;
-    socket_.shutdown(Tcp::socket::shutdown_send, problem);
+Task<void> Connection::closeGently() {
+    stream_.finish();
     allow(lingerTime);
-    buffer_.consume(buffer_.size());
-    while (!problem && !loop_.isStopping()) {
-        auto [error, size] =
-            co_await socket_.async_read_some(buffer_.prepare(limits_.requestHeaderBytes), answered);
-        problem = error;
-    }
+    char dropped[1024];
+    std::size_t count = 1;
+    while (count > 0 && !loop_.isStopping())
+        count = co_await stream_.readSome(dropped, sizeof dropped);
 }
 
 } // namespace stipple::server

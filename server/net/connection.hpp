@@ -2,15 +2,15 @@
 // Internal to server/net; lives on one loop's thread.
 #pragma once
 
-#include "server/net/body_sender.hpp"
+#include "server/http/request_header.hpp"
 #include "server/net/loop.hpp"
+#include "server/net/response_sender.hpp"
+#include "server/net/stream.hpp"
 
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/parser.hpp>
 #include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace stipple::server {
 
@@ -18,44 +18,64 @@ class Connection {
   public:
     using Clock = std::chrono::steady_clock;
 
-    Connection(Loop& loop, boost::asio::ip::tcp::socket socket);
+    Connection(Loop& loop, Socket socket, std::shared_ptr<const TlsContext> tls);
 
     // Until the client leaves, an error, a limit, or the end of the server.
-    boost::asio::awaitable<void> run();
+    Task<void> run();
 
-    void close(); // what is pending fails, and run() ends
-    bool isIdle() const { return isIdle_; }
+    void close(); // what is pending fails, and run() ends; what is being answered is broken off
+    bool isIdle() const { return phase_ == Phase::idle; }
     bool isLate(Clock::time_point now) const { return now >= deadline_; }
 
   private:
+    enum class Phase {
+        header, // the handshake of TLS or a request's header is arriving
+        idle,   // nothing of a next request has come
+        answering,
+    };
     // One request and what becomes of it.
     struct Exchange {
-        HttpRequest request;
-        Clock::time_point begin = Clock::now();
+        HttpRequest request; // views of received_
+        Clock::time_point begin;
         std::string job;
         int status = 499; // until there is an answer
         SendOutcome outcome;
         bool keepsAlive = false;
     };
-    using RequestParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
-    boost::asio::awaitable<bool> waitForRequest();
-    boost::asio::awaitable<int> readHeader(RequestParser& parser);
-    boost::asio::awaitable<bool> answerNext(); // true: the connection goes on
-    boost::asio::awaitable<void> answerJob(Exchange& exchange, Job job);
-    boost::asio::awaitable<void> sendWhole(Exchange& exchange, const HttpResponse& response);
+    // What has come and is not answered yet; at most ServerLimits::requestHeaderBytes.
+    struct Received {
+        std::vector<char> bytes;
+        std::size_t begin = 0, end = 0;
+        std::string_view view() const { return {bytes.data() + begin, end - begin}; }
+    };
+
+    Task<bool> begin();
+    Task<bool> readMore();
+    int look(); // at what has come: needsMore, headerRead, or the status of a refusal
+    void startExchange(int status);
+    Task<void> answerJob(Job job);
+    bool startSending(); // of answer_; false: finishSending() goes on with it
+    Task<void> finishSending();
+    void endSending();
+    bool endExchange(); // true: the connection goes on
+    Task<void> closeGently();
     HttpResponse unreadable(int status) const;
-    void log(const Exchange& exchange) const;
-    boost::asio::awaitable<void> closeGently();
-    void cut();
+    void log() const;
     void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
 
     Loop& loop_;
     const ServerLimits& limits_;
-    boost::asio::ip::tcp::socket socket_;
-    boost::beast::flat_buffer buffer_;
+    Stream stream_;
+    Received received_;
+    HeaderScan scan_;
+    Exchange exchange_;
+    Answer answer_;
+    std::string head_;
+    std::optional<ResponseSender> sender_; // of head_ and answer_
     std::string client_;
+    Phase phase_ = Phase::header;
     Clock::time_point deadline_;
-    bool isIdle_ = true;
+    int answeredInTurn_ = 0; // without having waited for anything
 };
 
 } // namespace stipple::server

@@ -4,21 +4,13 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
-#include <boost/asio/write.hpp>
 #include <cstdio>
-#include <poll.h>
 
 namespace stipple::server {
 
 namespace {
 
-namespace net = boost::asio;
-constexpr auto answered = net::as_tuple(net::use_awaitable);
 constexpr std::size_t pieceBytes = 256 * 1024; // for each of which the limit on progress holds
 
 HttpResponse retryLater(HttpResponse problem, const char* seconds) {
@@ -30,15 +22,11 @@ HttpResponse serverIsBusy() {
     return retryLater(problemResponse(503, "the server has too much to do"), "5");
 }
 
-std::size_t allAtOnce(const boost::system::error_code& error, std::size_t) {
-    return error ? 0 : 2 * pieceBytes;
-}
-
 } // namespace
 
-JobAnswer::JobAnswer(Loop& loop, net::ip::tcp::socket& socket, std::string client, Job job, bool headOnly)
-    : loop_(loop), socket_(socket), client_(std::move(client)),
-      wake_(std::make_shared<net::steady_timer>(loop.context())), headOnly_(headOnly) {
+JobAnswer::JobAnswer(Loop& loop, Stream& stream, std::string client, Job job, bool headOnly)
+    : loop_(loop), stream_(stream), client_(std::move(client)),
+      wake_(std::make_shared<Timer>(loop.context())), headOnly_(headOnly) {
     auto onNews = [wake = wake_, &context = loop.context()] {
         net::post(context, [wake] { wake->cancel(); });
     };
@@ -65,7 +53,7 @@ std::optional<HttpResponse> JobAnswer::refusal(JobPool::Admission admission) con
     return std::nullopt;
 }
 
-net::awaitable<std::optional<HttpResponse>> JobAnswer::wait() {
+Task<std::optional<HttpResponse>> JobAnswer::wait() {
     submitted_ = std::chrono::steady_clock::now();
     auto refused = refusal(loop_.state().jobs.submit(client_, run_));
     if (refused)
@@ -80,7 +68,7 @@ net::awaitable<std::optional<HttpResponse>> JobAnswer::wait() {
         if (news_.isOver)
             co_return jobProblem(news_.failure ? *news_.failure
                                                : Error{ErrorCode::ioFailed, "there is no answer", "", ""});
-        if (!hasClient())
+        if (stream_.hasClientLeft())
             co_return std::nullopt;
         if (isOverTime())
             co_return overTimeProblem();
@@ -102,17 +90,8 @@ HttpResponse JobAnswer::overTimeProblem() const {
     return problemResponse({problem_types::outOfTime, cat("this takes longer than ", seconds, " seconds")});
 }
 
-bool JobAnswer::hasClient() const {
-    if (!socket_.is_open())
-        return false;
-    struct pollfd state {
-        socket_.native_handle(), POLLRDHUP, 0
-    };
-    return ::poll(&state, 1, 0) <= 0;
-}
-
 // What there is; if nothing, what there is after a glance's time or as soon as the job says so.
-net::awaitable<void> JobAnswer::nextNews() {
+Task<void> JobAnswer::nextNews() {
     news_ = run_->take(body_);
     if (news_.head || !body_.empty() || news_.isOver)
         co_return;
@@ -121,20 +100,23 @@ net::awaitable<void> JobAnswer::nextNews() {
     news_ = run_->take(body_);
 }
 
-net::awaitable<SendOutcome> JobAnswer::sendBody(std::string head, BodyFraming framing,
-                                                std::function<void()> onProgress) {
-    head_ = std::move(head);
+Task<SendOutcome> JobAnswer::sendBody(std::string_view head, BodyFraming framing,
+                                      std::function<void()> onProgress) {
     framing_ = framing;
+    out_ = head;
     for (;;) { // the bytes that came with the head are in body_ already
         bool isLast = news_.isOver && !news_.failure;
         std::string_view rest = body_;
-        while (!rest.empty() || !head_.empty() || isLast) {
+        while (!rest.empty() || !out_.empty() || isLast) {
             std::string_view piece = rest.substr(0, pieceBytes);
             rest.remove_prefix(piece.size());
+            appendPiece(piece, isLast && rest.empty());
             onProgress();
-            bool isSent = co_await sendPiece(piece, isLast && rest.empty());
+            bool isSent = co_await stream_.writeAll(out_);
+            out_.clear();
             if (!isSent)
                 co_return outcome_;
+            outcome_.bodyBytes += piece.size();
             if (rest.empty())
                 break;
         }
@@ -143,31 +125,23 @@ net::awaitable<SendOutcome> JobAnswer::sendBody(std::string head, BodyFraming fr
             co_return outcome_;
         onProgress(); // a job that computes is no client that does not read
         co_await nextNews();
-        if (!news_.isOver && (!hasClient() || isOverTime()))
+        if (!news_.isOver && (stream_.hasClientLeft() || isOverTime()))
             co_return outcome_;
     }
 }
 
-// Head, chunk size, bytes and the end of the chunk, in one call. The last chunk is empty (RFC 9112 §7.1).
-net::awaitable<bool> JobAnswer::sendPiece(std::string_view piece, bool isLast) {
-    char before[24] = "";
-    std::string_view after;
-    if (framing_ == BodyFraming::chunked) {
-        if (!piece.empty()) {
-            std::snprintf(before, sizeof before, "%zx\r\n", piece.size());
-            after = isLast ? "\r\n0\r\n\r\n" : "\r\n";
-        } else if (isLast) {
-            after = "0\r\n\r\n";
-        }
+// A chunk leaves as a whole: size, bytes and end in one call. The last one is empty (RFC 9112 §7.1).
+void JobAnswer::appendPiece(std::string_view piece, bool isLast) {
+    bool isChunked = framing_ == BodyFraming::chunked;
+    if (isChunked && !piece.empty()) {
+        char size[24];
+        std::snprintf(size, sizeof size, "%zx\r\n", piece.size());
+        out_.append(size).append(piece).append("\r\n");
+    } else {
+        out_.append(piece);
     }
-    std::string_view beforeView(before);
-    std::array<net::const_buffer, 4> buffers{net::buffer(head_), net::buffer(beforeView), net::buffer(piece),
-                                             net::buffer(after)};
-    std::size_t headBytes = head_.size() + beforeView.size();
-    auto [error, written] = co_await net::async_write(socket_, buffers, allAtOnce, answered);
-    outcome_.bodyBytes += std::min(written > headBytes ? written - headBytes : 0, piece.size());
-    head_.clear();
-    co_return !error;
+    if (isChunked && isLast)
+        out_.append("0\r\n\r\n");
 }
 
 } // namespace stipple::server

@@ -3,12 +3,10 @@
 // connection's loop.
 #pragma once
 
-#include "server/net/body_sender.hpp"
 #include "server/net/loop.hpp"
+#include "server/net/response_sender.hpp"
+#include "server/net/stream.hpp"
 
-#include <boost/asio/awaitable.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,34 +21,32 @@ class JobAnswer {
     static constexpr std::chrono::milliseconds glance{25};
 
     // `client`: whom the limits count it for.
-    JobAnswer(Loop& loop, boost::asio::ip::tcp::socket& socket, std::string client, Job job, bool headOnly);
+    JobAnswer(Loop& loop, Stream& stream, std::string client, Job job, bool headOnly);
     ~JobAnswer(); // the job is taken back if it is not over
     JobAnswer(const JobAnswer&) = delete;
     JobAnswer& operator=(const JobAnswer&) = delete;
 
     // Until the job has answered, or can't: a refusal or a failure is a problem document. Nothing: the client
     // has left.
-    boost::asio::awaitable<std::optional<HttpResponse>> wait();
+    Task<std::optional<HttpResponse>> wait();
     // Whether what wait() gave is a head only, and sendBody() has to follow.
     bool isStreamed() const { return isStreamed_; }
 
     // Sends `head` and the body as the job makes it; only for what is no answer to a HEAD. Not complete if
     // the job failed or was stopped: the connection must be cut then.
-    boost::asio::awaitable<SendOutcome> sendBody(std::string head, BodyFraming framing,
-                                                 std::function<void()> onProgress);
+    Task<SendOutcome> sendBody(std::string_view head, BodyFraming framing, std::function<void()> onProgress);
 
   private:
-    boost::asio::awaitable<void> nextNews();
-    boost::asio::awaitable<bool> sendPiece(std::string_view piece, bool isLast);
+    Task<void> nextNews();
+    void appendPiece(std::string_view piece, bool isLast);
     std::optional<HttpResponse> refusal(JobPool::Admission admission) const;
-    bool hasClient() const;
     bool isOverTime() const;
     HttpResponse overTimeProblem() const;
 
     Loop& loop_;
-    boost::asio::ip::tcp::socket& socket_;
+    Stream& stream_;
     std::string client_;
-    std::shared_ptr<boost::asio::steady_timer> wake_; // shared with what other threads post
+    std::shared_ptr<Timer> wake_; // shared with what other threads post
     std::shared_ptr<JobRun> run_;
     std::chrono::steady_clock::time_point submitted_;
     const bool headOnly_;
@@ -58,7 +54,7 @@ class JobAnswer {
 
     JobNews news_;     // the last
     std::string body_; // taken from the run, being sent
-    std::string head_; // not sent yet
+    std::string out_;  // framed, being sent
     BodyFraming framing_ = BodyFraming::chunked;
     SendOutcome outcome_;
 };

@@ -8,8 +8,6 @@
 
 namespace stipple::server {
 
-namespace net = boost::asio;
-
 Loop::Loop(ServerState& state) : state_(state), work_(context_.get_executor()), sweepTimer_(context_) {
     scheduleSweep();
     thread_ = std::thread([this] { context_.run(); });
@@ -17,13 +15,13 @@ Loop::Loop(ServerState& state) : state_(state), work_(context_.get_executor()), 
 
 Loop::~Loop() = default;
 
-void Loop::adopt(net::ip::tcp::socket socket) {
-    auto connection = std::make_unique<Connection>(*this, std::move(socket));
+void Loop::adopt(Socket socket) {
+    auto connection = std::make_unique<Connection>(*this, std::move(socket), state_.tls());
     connections_.insert(connection.get());
     net::co_spawn(context_, serve(std::move(connection)), net::detached);
 }
 
-net::awaitable<void> Loop::serve(std::unique_ptr<Connection> connection) {
+Task<void> Loop::serve(std::unique_ptr<Connection> connection) {
     co_await connection->run();
     release(*connection);
 }
@@ -61,27 +59,13 @@ void Loop::closeEach(const std::function<bool(const Connection&)>& which) {
 
 void Loop::scheduleSweep() {
     sweepTimer_.expires_after(state_.limits.sweep);
-    sweepTimer_.async_wait([this](const boost::system::error_code& error) {
+    sweepTimer_.async_wait([this](const Failure& error) {
         if (error)
             return;
         auto now = Connection::Clock::now();
         closeEach([now](const Connection& connection) { return connection.isLate(now); });
         scheduleSweep();
     });
-}
-
-std::vector<char> Loop::takeBuffer() {
-    if (spareBuffers_.empty())
-        return std::vector<char>(bufferBytes);
-    std::vector<char> buffer = std::move(spareBuffers_.back());
-    spareBuffers_.pop_back();
-    return buffer;
-}
-
-void Loop::giveBuffer(std::vector<char> buffer) {
-    constexpr std::size_t kept = 16; // 1 MiB a loop; more are in use only while clients are slow
-    if (spareBuffers_.size() < kept)
-        spareBuffers_.push_back(std::move(buffer));
 }
 
 } // namespace stipple::server

@@ -2,14 +2,12 @@
 // Internal to server/net.
 #pragma once
 
+#include "server/net/asio.hpp"
+#include "server/net/response_sender.hpp"
 #include "server/net/server.hpp"
 
 #include <atomic>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/executor_work_guard.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -27,6 +25,13 @@ struct ServerState {
     std::shared_ptr<const RequestHandler> handler;
     RequestLog log;
     JobPool jobs;
+    // Of connections to come; null: plain.
+    std::shared_ptr<const TlsContext> tls() {
+        std::lock_guard lock(tlsMutex);
+        return tlsContext;
+    }
+    std::mutex tlsMutex;
+    std::shared_ptr<const TlsContext> tlsContext;
     std::mutex logMutex;
     std::atomic<int> openConnections{0};
     std::mutex drainedMutex;
@@ -40,7 +45,7 @@ class Loop {
     explicit Loop(ServerState& state);
     ~Loop(); // after join()
 
-    boost::asio::io_context& context() { return context_; }
+    net::io_context& context() { return context_; }
     ServerState& state() { return state_; }
 
     // From any thread.
@@ -49,25 +54,22 @@ class Loop {
     void join(); // ends the loop, dropping what is left
 
     // From the loop's own thread.
-    void adopt(boost::asio::ip::tcp::socket socket); // counted in openConnections already
+    void adopt(Socket socket); // counted in openConnections already
     bool isStopping() const { return isStopping_; }
-    std::vector<char> takeBuffer(); // bufferBytes long
-    void giveBuffer(std::vector<char> buffer);
-
-    static constexpr std::size_t bufferBytes = 64 * 1024;
+    BufferPool& buffers() { return buffers_; }
 
   private:
-    boost::asio::awaitable<void> serve(std::unique_ptr<Connection> connection);
+    Task<void> serve(std::unique_ptr<Connection> connection);
     void release(Connection& connection);
     void scheduleSweep();
     void closeEach(const std::function<bool(const Connection&)>& which);
 
     ServerState& state_;
-    boost::asio::io_context context_{1};
-    boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_;
-    boost::asio::steady_timer sweepTimer_;
+    net::io_context context_{1};
+    net::executor_work_guard<Executor> work_;
+    Timer sweepTimer_;
     std::set<Connection*> connections_;
-    std::vector<std::vector<char>> spareBuffers_;
+    BufferPool buffers_;
     bool isStopping_ = false;
     std::thread thread_;
 };

@@ -4,22 +4,15 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
-#include <boost/asio/as_tuple.hpp>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 
 namespace stipple::server {
 
 namespace {
 
-namespace net = boost::asio;
-using Tcp = net::ip::tcp;
-using Failure = boost::system::error_code;
-constexpr auto answered = net::as_tuple(net::use_awaitable);
 constexpr std::chrono::milliseconds acceptPause{100};
 
 Result<Tcp::endpoint> resolve(const std::string& host, std::uint16_t port) {
@@ -45,8 +38,8 @@ class BeastServer final : public Server {
         int threads = options.threads > 0 ? options.threads : std::clamp(cores, 1, 8);
         for (int i = 0; i < threads; ++i)
             loops_.push_back(std::make_unique<Loop>(state_));
-        acceptor_ = std::make_unique<Tcp::acceptor>(loops_.front()->context());
-        pause_ = std::make_unique<net::steady_timer>(loops_.front()->context());
+        acceptor_ = std::make_unique<Acceptor>(loops_.front()->context());
+        pause_ = std::make_unique<Timer>(loops_.front()->context());
     }
 
     ~BeastServer() override {
@@ -60,7 +53,7 @@ class BeastServer final : public Server {
         Failure problem;
         acceptor_->open(endpoint.protocol(), problem);
         if (!problem)
-            acceptor_->set_option(Tcp::acceptor::reuse_address(true), problem);
+            acceptor_->set_option(Acceptor::reuse_address(true), problem);
         if (!problem)
             acceptor_->bind(endpoint, problem);
         if (!problem)
@@ -116,7 +109,7 @@ class BeastServer final : public Server {
 
     // Runs on the first loop, and deals connections out to all in turn. When descriptors run out, or as many
     // connections are open as may be, it waits a moment instead of spinning; clients queue in the kernel.
-    net::awaitable<void> acceptForever() {
+    Task<void> acceptForever() {
         for (std::size_t next = 0; acceptor_->is_open();) {
             if (state_.openConnections >= state_.limits.connections) {
                 co_await pause();
@@ -136,15 +129,15 @@ class BeastServer final : public Server {
         }
     }
 
-    net::awaitable<void> pause() {
+    Task<void> pause() {
         pause_->expires_after(acceptPause);
         co_await pause_->async_wait(answered);
     }
 
     ServerState state_;
     std::vector<std::unique_ptr<Loop>> loops_;
-    std::unique_ptr<Tcp::acceptor> acceptor_; // used on the first loop once it runs
-    std::unique_ptr<net::steady_timer> pause_;
+    std::unique_ptr<Acceptor> acceptor_; // used on the first loop once it runs
+    std::unique_ptr<Timer> pause_;
     Tcp::endpoint endpoint_;
     bool isClosed_ = false; // under drainedMutex
 };

@@ -1,7 +1,9 @@
 // Targets, ranges and conditions as clients may send them. Lines of the input: target, Range, If-Match,
-// If-None-Match, If-Range, a date; the first byte of the input chooses the size of the file.
+// If-None-Match, If-Range, a date; the first byte of the input chooses the size of the file. All of it but
+// that byte is read as a request's header, too, in one piece and in two.
 #include "server/http/byte_range.hpp"
 #include "server/http/preconditions.hpp"
+#include "server/http/request_header.hpp"
 #include "server/http/target.hpp"
 #include "server/site/request_rules.hpp"
 
@@ -44,12 +46,36 @@ void checkRanges(std::string_view field, std::uint64_t sizeBytes) {
     }
 }
 
+void checkHeader(std::string_view bytes, std::size_t split) {
+    HeaderScan whole, inTwo;
+    HeaderScan::State state = whole.scan(bytes);
+    // A piece may be malformed where all of it is, but nothing else.
+    if (inTwo.scan(bytes.substr(0, split)) == HeaderScan::State::needsMore)
+        require(inTwo.scan(bytes) == state);
+    else
+        require(state != HeaderScan::State::needsMore);
+    if (state != HeaderScan::State::complete)
+        return;
+    std::string_view header = whole.header(bytes);
+    require(header.ends_with("\r\n\r\n") && whole.endBytes() <= bytes.size());
+    HttpRequest request;
+    if (parseRequestHeader(header, request) != 0)
+        return;
+    for (const auto& [name, value] : request.fields) {
+        require(!name.empty() && name.data() > header.data() && name.data() < header.data() + header.size());
+        require(value.find_first_of(std::string_view("\r\n\0", 3)) == std::string_view::npos);
+    }
+    (void)wantsKeepAlive(request);
+    (void)checkRequestRules(request);
+}
+
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0)
         return 0;
     std::string_view text(reinterpret_cast<const char*>(data) + 1, size - 1);
+    checkHeader(text, text.size() * data[0] / 256);
     std::array<std::string_view, 6> lines;
     for (std::string_view& line : lines) {
         std::size_t end = text.find('\n');

@@ -91,6 +91,25 @@ TEST_CASE("requests that another reader might split differently are refused and 
              {"a NUL in a field", get + std::string("X: a\0b\r\n\r\n", 10)},
              {"a bare carriage return in a field", get + "X: a\rY: b\r\n\r\n"},
              {"a space before the first field", "GET / HTTP/1.1\r\n Host: a\r\n\r\n"},
+             {"a folded field", get + "X: a\r\n b\r\n\r\n"},
+             {"a folded coding", get + "X: a\r\n\tTransfer-Encoding: chunked\r\n\r\n"},
+             {"bare line feeds", "GET / HTTP/1.1\nHost: a\n\n"},
+             {"a bare line feed between fields", get + "X: a\nTransfer-Encoding: chunked\r\n\r\n"},
+             {"an end of bare line feeds", "GET / HTTP/1.1\r\nHost: a\n\n"},
+             {"a length with a space before the colon", get + "Content-Length : 5\r\n\r\n"},
+             {"a length in hexadecimal", get + "Content-Length: 0x5\r\n\r\n"},
+             {"a length and an empty coding", get + "Content-Length: 5\r\nTransfer-Encoding:\r\n\r\n"},
+             {"two equal lengths", get + "Content-Length: 5\r\nContent-Length: 5\r\n\r\n"},
+             {"a coding in capitals", get + "TRANSFER-ENCODING: CHUNKED\r\n\r\n"},
+             {"a quoted coding", get + "Transfer-Encoding: \"chunked\"\r\n\r\n"},
+             {"a coding with a parameter", get + "Transfer-Encoding: chunked;x=y\r\n\r\n"},
+             {"a coding of two lines", get + "Transfer-Encoding: gzip\r\nTransfer-Encoding: chunked\r\n\r\n"},
+             {"an oversized chunk", get + "Transfer-Encoding: chunked\r\n\r\nFFFFFFFFFFFFFFFF\r\n"},
+             {"HTTP/1.0 with a length", "POST / HTTP/1.0\r\nContent-Length: 5\r\n\r\n"},
+             {"a space in the target", "GET /a b HTTP/1.1\r\nHost: a\r\n\r\n"},
+             {"a second version", "GET / HTTP/1.1 HTTP/1.1\r\nHost: a\r\n\r\n"},
+             {"a host with a path", "GET / HTTP/1.1\r\nHost: a/b\r\n\r\n"},
+             {"an empty first line of spaces", " \r\n" + get + "\r\n"},
              {"no version", "GET /\r\n\r\n"},
              {"HTTP/2", "GET / HTTP/2.0\r\nHost: a\r\n\r\n"},
              {"the HTTP/2 preface", "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"},
@@ -114,6 +133,7 @@ TEST_CASE("requests that another reader might split differently are refused and 
 TEST_CASE("headers and targets beyond the limits are refused with their own statuses") {
     TestServer server;
     CHECK(askOnce(server.port(), "GET /" + std::string(5000, 'a') + " HTTP/1.1\nHost: a").status == 414);
+    CHECK(askOnce(server.port(), "GET /" + std::string(50'000, 'a') + " HTTP/1.1\nHost: a").status == 414);
     CHECK(askOnce(server.port(), "GET / HTTP/1.1\nHost: a\nX: " + std::string(20'000, 'a')).status == 431);
     std::string many = "GET / HTTP/1.1\nHost: a";
     for (int i = 0; i < 3000; ++i)

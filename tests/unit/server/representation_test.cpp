@@ -111,11 +111,22 @@ TEST_CASE("the head of a response ends with an empty line and counts the body") 
     HttpResponse response;
     response.set("ETag", "\"x\"");
     response.body.push_back(std::string("12345"));
-    CHECK(responseHead(response, 784111777, true) ==
+    auto headOf = [&](std::int64_t now, bool keepsAlive, BodyFraming framing) {
+        std::string head;
+        appendResponseHead(head, response, now, keepsAlive, framing);
+        return head;
+    };
+    CHECK(headOf(784111777, true, BodyFraming::length) ==
           "HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nServer: stipple\r\nETag: \"x\"\r\n"
           "Content-Length: 5\r\nConnection: keep-alive\r\n\r\n");
+    CHECK(headOf(784111777, true, BodyFraming::chunked) ==
+          "HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nServer: stipple\r\nETag: \"x\"\r\n"
+          "Transfer-Encoding: chunked\r\nConnection: keep-alive\r\n\r\n");
+    CHECK(headOf(784111777, false, BodyFraming::untilClose) ==
+          "HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nServer: stipple\r\nETag: \"x\"\r\n"
+          "Connection: close\r\n\r\n");
     response.status = 304;
     response.body.clear();
-    CHECK(responseHead(response, 0, false).find("Content-Length") == std::string::npos);
-    CHECK(responseHead(response, 0, false).find("Connection: close") != std::string::npos);
+    CHECK(headOf(0, false, BodyFraming::length).find("Content-Length") == std::string::npos);
+    CHECK(headOf(0, false, BodyFraming::length).find("Connection: close") != std::string::npos);
 }
