@@ -1,5 +1,6 @@
 #include "client/render/gles_renderer.hpp"
 
+#include "client/render/gles_depth_reader.hpp"
 #include "client/render/gles_nodes.hpp"
 #include "client/render/gles_objects.hpp"
 #include "client/render/gradients.hpp"
@@ -185,10 +186,7 @@ class Gles3Renderer final : public GlesRenderer {
     }
 
     Status draw(FramePlan& plan, unsigned target) override {
-        if (plan.width < 1 || plan.height < 1 || plan.width > maxPictureSide || plan.height > maxPictureSide)
-            return Error{ErrorCode::invalidArgument,
-                         cat("a picture of ", plan.width, " × ", plan.height, " pixels can't be drawn"), "",
-                         cat("each side must be in 1..", maxPictureSide)};
+        STIPPLE_CHECK(checkSize(plan));
         RasterFrame frame = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
         bool direct = !edl.enabled && directTo(target);
@@ -209,11 +207,29 @@ class Gles3Renderer final : public GlesRenderer {
         return nodes_.endFrame() ? checkGl("uploading points") : Status();
     }
 
+    Result<std::vector<float>> distances(const FramePlan& plan) override {
+        STIPPLE_CHECK(checkSize(plan));
+        RasterFrame frame = rasterFrame(plan);
+        STIPPLE_CHECK(points_.resize(plan.width, plan.height));
+        glBindFramebuffer(GL_FRAMEBUFFER, points_.framebuffer.id());
+        drawPoints(plan, frame);
+        nodes_.endFrame();
+        return depthReader_.read(frame, points_.depth.id());
+    }
+
     std::uint64_t gpuBytes() const override {
         return nodes_.bytes() + points_.bytes() + 4ull * gradientEntries;
     }
 
   private:
+    static Status checkSize(const FramePlan& plan) {
+        if (plan.width < 1 || plan.height < 1 || plan.width > maxPictureSide || plan.height > maxPictureSide)
+            return Error{ErrorCode::invalidArgument,
+                         cat("a picture of ", plan.width, " × ", plan.height, " pixels can't be drawn"), "",
+                         cat("each side must be in 1..", maxPictureSide)};
+        return {};
+    }
+
     // The default framebuffer never changes its kind, so it is asked once.
     bool directTo(unsigned target) {
         if (target == 0 && defaultIsDirect_)
@@ -297,6 +313,7 @@ class Gles3Renderer final : public GlesRenderer {
     VertexArray emptyArray_;
     PointTarget points_;
     NodeBuffers nodes_;
+    DepthReader depthReader_;
     std::optional<bool> defaultIsDirect_;
 };
 

@@ -6,6 +6,7 @@
 #include "shared/base/result.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace stipple {
 
@@ -18,6 +19,9 @@ class GlesRenderer {
     // Draws into framebuffer `target` (0: the default one), plan.width × plan.height. Uploads nodes it has
     // not seen, frees buffers of nodes no longer in the plan.
     virtual Status draw(FramePlan& plan, unsigned target = 0) = 0;
+    // View distance of the point that each pixel of that plan shows, rows from top to bottom; 0 where there
+    // is none. Draws the points once more, into a buffer of its own, and waits for the GPU: for measuring.
+    virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
     virtual std::uint64_t gpuBytes() const = 0;
 };
 

@@ -79,6 +79,11 @@ struct RasterNode {
     float rampScale = 0, rampOffset = 0;
 };
 
+// The view distance at which a depth step begins.
+inline float distanceOfStep(const RasterFrame& frame, std::uint32_t step) {
+    return floatOfBits((step << frame.depthShift) + frame.nearBits);
+}
+
 // Both sides of the plan must be in 1..maxPictureSide.
 RasterFrame rasterFrame(const FramePlan& plan);
 RasterNode rasterNode(const FramePlan& plan, const DrawNode& node);

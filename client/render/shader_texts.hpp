@@ -7,5 +7,6 @@ extern const char* const pointsVertex;
 extern const char* const pointsFragment;
 extern const char* const resolveVertex;
 extern const char* const resolveFragment;
+extern const char* const stepsFragment;
 
 } // namespace stipple::shader_texts

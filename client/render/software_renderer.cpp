@@ -20,7 +20,7 @@ class CellRenderer final : public SoftwareRenderer {
     const Image& render(FramePlan& plan) override {
         if (!resize(plan))
             return image_;
-        RasterFrame frame = rasterFrame(plan);
+        RasterFrame frame = frame_ = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
         placeNodes(plan);
         drawPoints(frame);
@@ -30,6 +30,14 @@ class CellRenderer final : public SoftwareRenderer {
             byRows([&](int y) { shadeRow(edl, distances_, y, image_); });
         ++(edl.enabled ? plan.counters.passesRun : plan.counters.passesSkipped);
         return image_;
+    }
+
+    std::vector<float> distances() const override {
+        std::vector<float> result(image_.rgba.size() / 4);
+        for (std::size_t i = 0; i < result.size(); ++i)
+            if (cells_[i] != emptyCell)
+                result[i] = distanceOfStep(frame_, static_cast<std::uint32_t>(cells_[i] >> indexBits));
+        return result;
     }
 
   private:
@@ -91,6 +99,7 @@ class CellRenderer final : public SoftwareRenderer {
 
     WorkerPool workers_;
     Image image_;
+    RasterFrame frame_; // of image_
     std::vector<std::uint64_t> cells_;
     std::vector<PlacedNode> nodes_;
     std::vector<PointRun> runs_;

@@ -6,6 +6,7 @@
 #include "client/render/image.hpp"
 
 #include <memory>
+#include <vector>
 
 namespace stipple {
 
@@ -18,6 +19,10 @@ class SoftwareRenderer {
     // Adds to plan.counters.passesRun and passesSkipped. The picture and all buffers are kept until the next
     // call. A plan whose sides are not in 1..16384 pixels gives an empty picture.
     virtual const Image& render(FramePlan& plan) = 0;
+
+    // Of the last picture: the view distance of each pixel's point, rows from top to bottom; 0 where there is
+    // none.
+    virtual std::vector<float> distances() const = 0;
 };
 
 } // namespace stipple

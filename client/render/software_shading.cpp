@@ -102,7 +102,7 @@ void colourRow(const FramePlan& plan, const RasterFrame& frame, const std::vecto
             word = colourOf(table, *placed, static_cast<std::size_t>(place));
             if (inverse) {
                 auto step = static_cast<std::uint32_t>(line[x] >> indexBits);
-                inverse[x] = 1.0f / floatOfBits((step << frame.depthShift) + frame.nearBits);
+                inverse[x] = 1.0f / distanceOfStep(frame, step);
             }
         }
         std::memcpy(out + 4 * x, &word, 4);

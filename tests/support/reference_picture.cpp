@@ -86,4 +86,15 @@ std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, i
     return wrong;
 }
 
+std::size_t wrongDistances(const std::vector<float>& distances, const ReferencePicture& reference) {
+    constexpr float tolerance = 4e-6f; // reference::Slack
+    std::size_t wrong = distances.size() == reference.unsure.size() ? 0 : SIZE_MAX;
+    for (std::size_t at = 0; at < reference.unsure.size() && wrong < SIZE_MAX; ++at) {
+        float expected = reference.picture.distances[at];
+        bool differs = std::abs(distances[at] - expected) > tolerance * expected;
+        wrong += differs && !reference.unsure[at] ? 1 : 0;
+    }
+    return wrong;
+}
+
 } // namespace stipple::test

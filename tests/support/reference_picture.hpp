@@ -20,5 +20,7 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
 
 // Differing pixels that `reference` is sure of.
 std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, int toleranceLevels);
+// The same of view distances, which must agree to a depth step.
+std::size_t wrongDistances(const std::vector<float>& distances, const ReferencePicture& reference);
 
 } // namespace stipple::test

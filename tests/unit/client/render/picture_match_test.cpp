@@ -88,6 +88,7 @@ TEST_CASE("the software picture is the reference's wherever that is sure", "[sof
         FramePlan plan = testPlan(scene.nodes, scene.view, scene.style);
         const Image& image = renderer->render(plan);
         CHECK(wrongPixels(image, reference, colourTolerance(scene)) == 0);
+        CHECK(wrongDistances(renderer->distances(), reference) == 0);
         for (bool pixel : reference.unsure)
             unsure += pixel;
         total += reference.unsure.size();
@@ -114,6 +115,9 @@ TEST_CASE("software and GLES draw the same picture", "[gles]") {
         Image b = glesPicture(*context, **gles, plan);
         measure::PixelError apart = measure::pixelError(a, b, scene.style.edl.enabled ? 3 : 2);
         CHECK(apart.differing * 2000 <= a.rgba.size() / 4);
+        auto distances = (*gles)->distances(plan);
+        REQUIRE(distances.ok());
+        CHECK(*distances == software->distances());
         worst.largest = std::max(worst.largest, apart.largest);
         beyond += apart.differing;
         pixels += a.rgba.size() / 4;
