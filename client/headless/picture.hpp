@@ -6,6 +6,7 @@
 #include "client/core/counters.hpp"
 #include "client/core/style.hpp"
 #include "client/core/view_session.hpp"
+#include "client/headless/frame_drawer.hpp"
 #include "client/render/image.hpp"
 #include "shared/base/result.hpp"
 #include "shared/io/byte_source.hpp"
@@ -17,7 +18,6 @@
 
 namespace stipple::headless {
 
-enum class Backend { software, gles };
 // When to draw: once everything the view wants has arrived, or as soon as there is anything to see.
 enum class Until { complete, first };
 
@@ -40,7 +40,7 @@ struct Picture {
     Camera camera;
     FrameCounters frame;
     SessionCounters session;
-    std::string renderer;                                     // "software, 2 threads", or the GL driver
+    std::string renderer;                                     // "software", or the GL driver
     double openSeconds = 0, loadSeconds = 0, drawSeconds = 0; // until ready; until settled; drawing
 };
 

@@ -1,0 +1,39 @@
+#include "client/headless/session_loader.hpp"
+
+#include "shared/base/text.hpp"
+
+#include <utility>
+
+namespace stipple::headless {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds updateWait{100};
+
+} // namespace
+
+SessionLoader::SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout)
+    : session_(session), name_(std::move(name)), timeout_(timeout), deadline_(Clock::now() + timeout) {}
+
+Status SessionLoader::until(const std::function<bool()>& done) {
+    while (!done()) {
+        if (Clock::now() >= deadline_)
+            return timeOut();
+        session_.update(updateWait);
+        for (const CloudState& cloud : session_.clouds())
+            if (cloud.stage == CloudStage::failed)
+                return cloud.error;
+    }
+    std::vector<Error> errors = session_.recentErrors();
+    return errors.empty() ? Status() : Status(errors.front());
+}
+
+Status SessionLoader::timeOut() const {
+    bool address = name_.find("://") != std::string::npos;
+    return Error{address ? ErrorCode::networkFailed : ErrorCode::limitExceeded,
+                 cat("not everything that the picture needs has arrived within ",
+                     static_cast<double>(timeout_.count()) * 1e-3, " s"),
+                 name_, "lower --budget or raise --timeout"};
+}
+
+} // namespace stipple::headless

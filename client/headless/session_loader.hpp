@@ -1,0 +1,32 @@
+// Waits for what a session loads, up to a deadline.
+#pragma once
+
+#include "client/core/view_session.hpp"
+#include "shared/base/result.hpp"
+
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace stipple::headless {
+
+class SessionLoader {
+  public:
+    // `session` has clouds of one source, called `name`; `timeout` counts from here on.
+    SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout);
+
+    // Updates the session until `done()`. Errors: of a cloud that failed, of single nodes (also once done: a
+    // picture with holes is no answer); networkFailed (addresses) or limitExceeded (files) when time runs
+    // out.
+    Status until(const std::function<bool()>& done);
+
+  private:
+    Status timeOut() const;
+
+    ViewSession& session_;
+    std::string name_;
+    std::chrono::milliseconds timeout_;
+    std::chrono::steady_clock::time_point deadline_;
+};
+
+} // namespace stipple::headless
