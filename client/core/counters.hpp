@@ -16,6 +16,7 @@ struct FrameCounters {
     std::uint64_t nodesSelected = 0;       // wanted in the picture
     std::uint64_t nodesWaiting = 0;        // wanted, not here yet
     std::uint64_t nodesDrawn = 0;          // here and drawn
+    std::uint64_t pointsConsidered = 0;    // points of nodes in view and large enough, as far as was looked
     std::uint64_t pointsSelected = 0;      // points of selected nodes
     std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
     std::uint64_t chunksWaiting = 0;       // hierarchy chunks wanted, not here yet

@@ -201,6 +201,7 @@ json toJson(const FrameCounters& c) {
             {"nodesSelected", c.nodesSelected},
             {"nodesWaiting", c.nodesWaiting},
             {"nodesDrawn", c.nodesDrawn},
+            {"pointsConsidered", c.pointsConsidered},
             {"pointsSelected", c.pointsSelected},
             {"pointsDrawn", c.pointsDrawn},
             {"chunksWaiting", c.chunksWaiting},

@@ -62,8 +62,10 @@ class Selector {
         double pixels = pixelsOf(known.geometry);
         if (pixels < input_.minNodePixels && !isRoot)
             ++counters().nodesTooSmall;
-        else
+        else {
+            counters().pointsConsidered += known.entry.pointCount;
             queue_.push({pixels, cloud, node, &known, ancestorsDrawn});
+        }
     }
 
     void take(const Candidate& next) {

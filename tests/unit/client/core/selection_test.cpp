@@ -182,6 +182,7 @@ TEST_CASE("the budget is met exactly, the last node draws a prefix, and only its
     CHECK(tree.selected(frame) == "r a c ");
     CHECK(frame.nodes[2].points == 30);
     CHECK(frame.counters.pointsSelected == 230);
+    CHECK(frame.counters.pointsConsidered == 600);
     CHECK(frame.counters.nodesOverBudget == 3);  // b, d, and a0 were in the queue
     CHECK(tree.wanted(frame) == "r:1 a:4 c:3 "); // 13, 25, 50 points in 1, 2, 3 strata
     tree.arrive("r");
