@@ -11,7 +11,7 @@ class SoftwareDrawer final : public FrameDrawer {
   public:
     explicit SoftwareDrawer(int threads) : renderer_(SoftwareRenderer::create(threads)) {}
 
-    Result<Image> draw(FramePlan& plan) override { return renderer_->render(plan); }
+    Result<const Image*> draw(FramePlan& plan) override { return &renderer_->render(plan); }
     Result<std::vector<float>> distances(const FramePlan&) override { return renderer_->distances(); }
     std::string name() const override { return "software"; }
 
@@ -29,10 +29,12 @@ class GlesDrawer final : public FrameDrawer {
         return {};
     }
 
-    Result<Image> draw(FramePlan& plan) override {
+    Result<const Image*> draw(FramePlan& plan) override {
         STIPPLE_TRY(target, context_->framebuffer(plan.width, plan.height));
         STIPPLE_CHECK(renderer_->draw(plan, target));
-        return context_->read();
+        STIPPLE_TRY(image, context_->read());
+        image_ = std::move(image);
+        return &image_;
     }
     Result<std::vector<float>> distances(const FramePlan& plan) override {
         return renderer_->distances(plan);
@@ -42,6 +44,7 @@ class GlesDrawer final : public FrameDrawer {
   private:
     std::unique_ptr<EglContext> context_;
     std::unique_ptr<GlesRenderer> renderer_; // frees its objects while the context is there
+    Image image_;
 };
 
 } // namespace

@@ -20,8 +20,9 @@ class FrameDrawer {
     static Result<std::unique_ptr<FrameDrawer>> create(Backend backend, int threads);
     virtual ~FrameDrawer() = default;
 
-    // Draws and, with GLES, reads the picture back, which waits for the GPU. Adds to plan.counters.
-    virtual Result<Image> draw(FramePlan& plan) = 0;
+    // Draws and, with GLES, reads the picture back, which waits for the GPU. Adds to plan.counters. The
+    // picture is kept until the next call.
+    virtual Result<const Image*> draw(FramePlan& plan) = 0;
     // View distances of the plan that was drawn last; see GlesRenderer::distances.
     virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
     virtual std::string name() const = 0; // "software", or the GL driver

@@ -85,7 +85,7 @@ Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureReq
     start = Clock::now();
     STIPPLE_TRY(image, drawer->draw(plan));
     picture.drawSeconds = secondsSince(start);
-    picture.image = std::move(image);
+    picture.image = *image;
     picture.camera = camera;
     picture.frame = plan.counters;
     picture.session = session->counters();

@@ -22,6 +22,9 @@ void addViewVerb(CLI::App& program, cli::Action& action);
 #ifdef HAVE_stipple_render_verbs
 void addRenderVerb(CLI::App& program, cli::Action& action);
 #endif
+#ifdef HAVE_stipple_bench_verbs
+void addBenchVerb(CLI::App& program, cli::Action& action);
+#endif
 } // namespace stipple
 
 namespace stipple::headless {
@@ -47,6 +50,9 @@ std::vector<AddVerb> allVerbs() {
 #endif
 #ifdef HAVE_stipple_render_verbs
         addRenderVerb,
+#endif
+#ifdef HAVE_stipple_bench_verbs
+        addBenchVerb,
 #endif
     };
 }

@@ -1,0 +1,107 @@
+#include "client/bench/mode.hpp"
+
+#include "client/core/json.hpp"
+#include "client/core/json_fields.hpp"
+#include "shared/base/text.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+
+namespace stipple::bench {
+namespace {
+
+using nlohmann::json;
+
+// The table. JSON, so that a mode says what differs from the defaults and nothing else.
+constexpr const char* table = R"json([
+{"name": "default", "about": "the page's style: circles of 2 pixels, eye-dome lighting of 8 neighbours", "sweep": true},
+{"name": "pixels", "about": "single pixels, no lighting", "sweep": true,
+ "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}},
+{"name": "all-nodes", "about": "default, without the limit on the size of nodes", "sweep": true,
+ "limits": {"minNodePixels": 0}},
+{"name": "circles", "about": "circles of 2 pixels, no lighting", "style": {"edl": {"enabled": false}}},
+{"name": "squares-3", "about": "squares of 3 pixels, no lighting",
+ "style": {"sizePixels": 3, "shape": "square", "edl": {"enabled": false}}},
+{"name": "world", "about": "circles as wide as the points are apart, no lighting", "worldSizeSpacings": 1.5,
+ "style": {"sizeMode": "world", "edl": {"enabled": false}}},
+{"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
+{"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
+{"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
+{"name": "gles-default", "about": "default, with OpenGL ES", "backend": "gles"},
+{"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
+ "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
+])json";
+
+constexpr json_fields::Names<headless::Backend, 2> backends{{
+    {"software", headless::Backend::software},
+    {"gles", headless::Backend::gles},
+}};
+
+Result<Mode> modeFromJson(const json& value) {
+    if (!value.is_object() || !value.value("name", json()).is_string())
+        return Error{ErrorCode::invalidArgument, "each mode is an object with a name", "modes", ""};
+    Mode mode;
+    mode.name = value["name"].get<std::string>();
+    json rest = value;
+    rest.erase("name");
+    if (rest.contains("about") && rest["about"].is_string()) {
+        mode.about = rest["about"].get<std::string>();
+        rest.erase("about");
+    }
+    if (rest.contains("style")) {
+        STIPPLE_TRY(style, styleFromJson(rest["style"]));
+        mode.style = style;
+        rest.erase("style");
+    }
+    if (rest.contains("limits")) {
+        STIPPLE_TRY(limits, limitsFromJson(rest["limits"]));
+        mode.limits = limits;
+        rest.erase("limits");
+    }
+    json_fields::FieldReader fields(rest, cat("mode '", mode.name, "'"));
+    fields.choice("backend", mode.backend, backends);
+    fields.flag("sweep", mode.sweep);
+    fields.number("worldSizeSpacings", mode.worldSizeSpacings, 0, 1e6);
+    STIPPLE_CHECK(fields.finish());
+    return mode;
+}
+
+} // namespace
+
+const std::vector<Mode>& builtInModes() {
+    static const std::vector<Mode> modes = [] {
+        auto read = modesFromJson(json::parse(table));
+        if (!read.ok())
+            std::abort(); // the table itself is wrong; tests read it
+        return std::move(*read);
+    }();
+    return modes;
+}
+
+Result<std::vector<Mode>> modesFromJson(const json& value) {
+    if (!value.is_array())
+        return Error{ErrorCode::invalidArgument, "a list of modes is expected", "modes", ""};
+    std::vector<Mode> modes;
+    for (const json& item : value) {
+        STIPPLE_TRY(mode, modeFromJson(item));
+        modes.push_back(std::move(mode));
+    }
+    return modes;
+}
+
+const char* backendName(headless::Backend backend) {
+    return json_fields::nameOf(backends, backend);
+}
+
+json toJson(const Mode& mode) {
+    return {{"name", mode.name},
+            {"about", mode.about},
+            {"style", stipple::toJson(mode.style)},
+            {"limits", stipple::toJson(mode.limits)},
+            {"backend", backendName(mode.backend)},
+            {"sweep", mode.sweep},
+            {"worldSizeSpacings", mode.worldSizeSpacings}};
+}
+
+} // namespace stipple::bench

@@ -1,0 +1,39 @@
+// Ways of drawing that `stipple bench` compares: a style, limits of the session and a renderer each, in a
+// table.
+#pragma once
+
+#include "client/core/style.hpp"
+#include "client/core/view_session.hpp"
+#include "client/headless/frame_drawer.hpp"
+#include "shared/base/result.hpp"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace stipple::bench {
+
+struct Mode {
+    std::string name;
+    std::string about; // one line for people
+    Style style;
+    SessionLimits limits; // its point budget is replaced by the bench's
+    headless::Backend backend = headless::Backend::software;
+    bool sweep = false; // run with every budget, not only the usual one
+    // Sizes in world units, as a multiple of the mean distance of points seen from above, √(x side × y side /
+    // points); 0: style.sizeWorld as it is.
+    double worldSizeSpacings = 0;
+};
+
+// A new way to draw is a line in mode.cpp.
+const std::vector<Mode>& builtInModes();
+
+// [{"name": …, "about": …, "style": {…}, "limits": {…}, "backend": "software" or "gles", "sweep": true,
+//   "worldSizeSpacings": 1}, …]; all but the name may be absent. Errors: invalidArgument, naming the field.
+Result<std::vector<Mode>> modesFromJson(const nlohmann::json& json);
+nlohmann::json toJson(const Mode& mode);
+const char* backendName(headless::Backend backend);
+
+} // namespace stipple::bench
