@@ -2,6 +2,7 @@
 
 #include "converter/build/spacing.hpp"
 #include "converter/export/minimum_distance.hpp"
+#include "converter/export/value_ranges.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
@@ -150,14 +151,23 @@ Status CloudFilter::limitRegion() {
     }
     if (filter_.gridBox)
         reach_ = intersection(reach_, *filter_.gridBox);
-    restricts_ = reach_ != bounds;
-    if (filter_.region && !reach_.empty()) {
-        constexpr double infinity = std::numeric_limits<double>::infinity();
+    restricts_ = reach_ != bounds || filter_.region || filter_.convex || filter_.corridor;
+    auto reachOnlyInto = [&](BoxD around) {
+        bool isEmpty = !(around.min.x <= around.max.x);
+        if (!reach_.empty())
+            reach_ = isEmpty ? BoxI{} : stepsIn(metadata_->grid, reach_, around);
+    };
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    if (filter_.region) {
         BoxD around = filter_.region->bounds();
         around.min.z = -infinity;
         around.max.z = infinity;
-        reach_ = around.min.x <= around.max.x ? stepsIn(metadata_->grid, reach_, around) : BoxI{};
+        reachOnlyInto(around);
     }
+    if (filter_.convex)
+        reachOnlyInto(filter_.convex->bounds());
+    if (filter_.corridor)
+        reachOnlyInto(filter_.corridor->bounds());
     return {};
 }
 
@@ -186,6 +196,8 @@ Status CloudFilter::limitAttributes() {
         if (metadata_->schema.attributes[place].components != 1)
             return invalid(
                 cat("\"", condition.attribute, "\" has several values a point, none to filter by"));
+        if (condition.ofMeaning)
+            condition.ranges = storedRanges(metadata_->schema.attributes[place], condition.ranges);
         conditionAttributes_.push_back(index);
         restricts_ = true;
         if (place >= metadata_->statistics.size())
@@ -206,17 +218,28 @@ BoxI CloudFilter::cubeOf(const NodeKey& key) const {
     return intersection({corner, corner + Vec3i{last, last, last}}, metadata_->bounds);
 }
 
-Overlap CloudFilter::overlapOf(const NodeEntry& entry) const {
+// A corner is where grid.toWorld() puts it, so no point of the box lies outside.
+BoxD CloudFilter::worldBoxOf(const BoxI& steps) const {
+    return {metadata_->grid.toWorld(steps.min), metadata_->grid.toWorld(steps.max)};
+}
+
+CloudFilter::Overlaps CloudFilter::overlapsOf(const NodeEntry& entry) const {
     BoxI cube = cubeOf(entry.key);
     BoxI common = intersection(cube, reach_);
-    if (common.empty())
-        return Overlap::none;
-    Overlap byBox = contains(reach_, cube) ? Overlap::whole : Overlap::partial;
-    if (!filter_.region)
-        return byBox;
-    Overlap byRegion =
-        filter_.region->overlapOf({metadata_->grid.toWorld(common.min), metadata_->grid.toWorld(common.max)});
-    return byRegion == Overlap::whole ? byBox : byRegion;
+    Overlaps overlaps;
+    if (common.empty()) {
+        overlaps.box = Overlap::none;
+        return overlaps;
+    }
+    overlaps.box = contains(reach_, cube) ? Overlap::whole : Overlap::partial;
+    BoxD box = worldBoxOf(common);
+    if (filter_.region)
+        overlaps.polygons = filter_.region->overlapOf(box);
+    if (filter_.convex)
+        overlaps.convex = filter_.convex->overlapOf(box);
+    if (filter_.corridor)
+        overlaps.corridor = filter_.corridor->overlapOf(box);
+    return overlaps;
 }
 
 bool CloudFilter::thins(const NodeEntry& entry) const {
@@ -233,7 +256,7 @@ CloudFilter::Verdict CloudFilter::verdictOn(const NodeEntry& entry) const {
         return Verdict::absent;
     if (entry.key.level > deepestLevel_)
         return Verdict::finer;
-    Overlap overlap = overlapOf(entry);
+    Overlap overlap = overlapsOf(entry).all();
     if (overlap == Overlap::none)
         return Verdict::outside;
     bool needsTests = overlap == Overlap::partial || !filter_.conditions.empty() || thins(entry);
@@ -243,7 +266,30 @@ CloudFilter::Verdict CloudFilter::verdictOn(const NodeEntry& entry) const {
 bool CloudFilter::wantsBelow(const NodeEntry& entry) const {
     if (wantsEverything())
         return true;
-    return !noneHasValues_ && entry.key.level < deepestLevel_ && overlapOf(entry) != Overlap::none;
+    return !noneHasValues_ && entry.key.level < deepestLevel_ && overlapsOf(entry).all() != Overlap::none;
+}
+
+void CloudFilter::keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry& entry,
+                               std::span<const Vec3i> positions) const {
+    const Overlaps overlaps = overlapsOf(entry);
+    auto keep = [&](Overlap overlap, auto holds) {
+        if (overlap != Overlap::whole)
+            std::erase_if(rows, [&](std::uint32_t row) { return !holds(positions[row]); });
+    };
+    auto world = [&](Vec3i p) { return metadata_->grid.toWorld(p); };
+    keep(overlaps.box, [&](Vec3i p) { return reach_.contains(p); });
+    keep(overlaps.convex, [&](Vec3i p) { return filter_.convex->contains(world(p)); });
+    keep(overlaps.polygons, [&](Vec3i p) {
+        Vec3d at = world(p);
+        return filter_.region->contains({at.x, at.y});
+    });
+    if (overlaps.corridor == Overlap::whole)
+        return;
+    std::vector<std::uint32_t> parts = filter_.corridor->partsNear(worldBoxOf(cubeOf(entry.key)));
+    keep(overlaps.corridor, [&](Vec3i p) {
+        Vec3d at = world(p);
+        return filter_.corridor->contains({at.x, at.y}, parts);
+    });
 }
 
 std::vector<std::uint32_t> CloudFilter::select(const NodeEntry& entry, std::span<const Vec3i> positions,
@@ -258,14 +304,7 @@ std::vector<std::uint32_t> CloudFilter::select(const NodeEntry& entry, std::span
     dropped.bySpacing += positions.size() - rows.size();
 
     std::size_t before = rows.size();
-    if (overlapOf(entry) != Overlap::whole) {
-        std::erase_if(rows, [&](std::uint32_t row) { return !reach_.contains(positions[row]); });
-        if (filter_.region)
-            std::erase_if(rows, [&](std::uint32_t row) {
-                Vec3d world = metadata_->grid.toWorld(positions[row]);
-                return !filter_.region->contains({world.x, world.y});
-            });
-    }
+    keepInRegion(rows, entry, positions);
     dropped.byRegion += before - rows.size();
 
     before = rows.size();
@@ -275,6 +314,20 @@ std::vector<std::uint32_t> CloudFilter::select(const NodeEntry& entry, std::span
     }
     dropped.byAttribute += before - rows.size();
     return rows;
+}
+
+std::array<Bytes, 2> CloudFilter::placesAlong(const NodeEntry& entry,
+                                              std::span<const Vec3i> positions) const {
+    std::array<Bytes, 2> columns{Bytes(8 * positions.size()), Bytes(8 * positions.size())};
+    std::vector<std::uint32_t> parts = filter_.corridor->partsNear(worldBoxOf(cubeOf(entry.key)));
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        constexpr double none = std::numeric_limits<double>::quiet_NaN();
+        Vec3d at = metadata_->grid.toWorld(positions[i]);
+        auto place = filter_.corridor->placeOf({at.x, at.y}, parts).value_or(Corridor::Place{none, none});
+        storeLe(columns[0].data() + 8 * i, place.station);
+        storeLe(columns[1].data() + 8 * i, place.offset);
+    }
+    return columns;
 }
 
 } // namespace stipple

@@ -2,7 +2,8 @@
 // rest point by point.
 //
 // Exact: a box in world units becomes the grid integers whose world positions lie in it (grid.toWorld() never
-// falls as integers rise), and polygons are asked with the doubles of grid.toWorld().
+// falls as integers rise), and polygons, rotated boxes and corridors are asked with the doubles of
+// grid.toWorld().
 //
 // Thread: any number, once made.
 #pragma once
@@ -13,6 +14,8 @@
 #include "shared/format/node_entry.hpp"
 #include "shared/points/point_batch.hpp"
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -36,7 +39,7 @@ class CloudFilter {
     Verdict verdictOn(const NodeEntry& entry) const;
     // Can a node below `entry` hold wanted points?
     bool wantsBelow(const NodeEntry& entry) const;
-    bool wantsEverything() const { return !restricts_ && !filter_.region && deepestLevel_ == maxLevel; }
+    bool wantsEverything() const { return !restricts_ && deepestLevel_ == maxLevel; }
 
     // The attributes whose values tests need (indices into the schema).
     const std::vector<int>& testedAttributes() const { return conditionAttributes_; }
@@ -48,6 +51,11 @@ class CloudFilter {
     std::vector<std::uint32_t> select(const NodeEntry& entry, std::span<const Vec3i> positions,
                                       std::span<const Bytes* const> tested, Dropped& dropped) const;
 
+    // Where points of a node lie along the corridor of the filter: doubles, little-endian, a column of
+    // stations and one of offsets. NaN for points that are not in it. There must be a corridor.
+    std::array<Bytes, 2> placesAlong(const NodeEntry& entry, std::span<const Vec3i> positions) const;
+    bool hasCorridor() const { return filter_.corridor != nullptr; }
+
     // Every point wanted lies in it (grid integers); empty if there can be none.
     const BoxI& reach() const { return reach_; }
     int deepestLevel() const { return deepestLevel_; }
@@ -58,13 +66,22 @@ class CloudFilter {
     Status limitLevels();
     Status limitAttributes();
     bool thins(const NodeEntry& entry) const;
-    Overlap overlapOf(const NodeEntry& entry) const;
+    // How the parts of the region lie to a node's points: which of them have to be asked about each.
+    struct Overlaps {
+        Overlap box = Overlap::whole, polygons = Overlap::whole, convex = Overlap::whole,
+                corridor = Overlap::whole;
+        Overlap all() const { return std::min({box, polygons, convex, corridor}); }
+    };
+    Overlaps overlapsOf(const NodeEntry& entry) const;
     BoxI cubeOf(const NodeKey& key) const;
+    BoxD worldBoxOf(const BoxI& steps) const;
+    void keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry& entry,
+                      std::span<const Vec3i> positions) const;
 
     const CloudMetadata* metadata_;
     PointFilter filter_;
     BoxI reach_;
-    bool restricts_ = false; // does the reach leave out part of the cloud's bounds, or are there conditions?
+    bool restricts_ = false; // can there be points that are not wanted?
     int deepestLevel_ = maxLevel;
     Vec3d metric_; // world units per step of an axis, as the minimum distance is measured
     bool noneHasValues_ = false;

@@ -2,6 +2,7 @@
 
 #include "converter/build/output_check.hpp"
 #include "converter/build/parallel.hpp"
+#include "converter/export/corridor_attributes.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/geojson.hpp"
 #include "converter/export/polygon_crs.hpp"
@@ -53,7 +54,17 @@ class Export {
         result_.output = output_;
         STIPPLE_TRY(filter, makeFilter());
         STIPPLE_TRY(attributes, chooseAttributes());
-        STIPPLE_CHECK(write(reader, filter, {result_.metadata, attributes}));
+        CloudMetadata metadata = result_.metadata;
+        if (options_.filter.corridor) {
+            auto stored = static_cast<int>(metadata.schema.attributes.size());
+            addCorridorAttributes(metadata);
+            for (int derived : {stored, stored + 1})
+                attributes.push_back(derived);
+        }
+        for (int attribute : attributes)
+            result_.attributes.push_back(
+                metadata.schema.attributes[static_cast<std::size_t>(attribute)].name);
+        STIPPLE_CHECK(write(reader, filter, {metadata, attributes}));
         return std::move(result_);
     }
 
@@ -96,8 +107,6 @@ class Export {
             STIPPLE_TRY(chosen, attributesFromTexts(schema, *options_.attributes));
             attributes = std::move(chosen);
         }
-        for (int attribute : attributes)
-            result_.attributes.push_back(schema.attributes[static_cast<std::size_t>(attribute)].name);
         return attributes;
     }
 
@@ -105,6 +114,7 @@ class Export {
         WalkOptions walk;
         walk.threads = threadCount(options_.threads);
         walk.stop = options_.stop;
+        walk.limit = options_.limit;
         // How many points a filter leaves to read is not known before.
         std::uint64_t total = whole ? result_.metadata.pointCount : 0;
         walk.progress = [this, phase, total](std::uint64_t points) { progress_(phase, points, total); };
@@ -145,7 +155,7 @@ class Export {
         STIPPLE_CHECK(sink.finish());
         result_.counters = counters;
         result_.points = counters.pointsTaken;
-        if (filter.wantsEverything() && result_.points != result_.metadata.pointCount)
+        if (filter.wantsEverything() && options_.limit == 0 && result_.points != result_.metadata.pointCount)
             result_.warnings.push_back(cat("the cloud says it has ", result_.metadata.pointCount,
                                            " points, but its nodes hold ", result_.points));
         return {};

@@ -20,7 +20,8 @@ Result<ExportFormat> exportFormatOf(const std::string& output);
 
 struct ExportOptions {
     std::optional<ExportFormat> format = {}; // none: by the output's extension
-    PointFilter filter = {};
+    PointFilter filter = {};      // with a corridor, points have their station and offset in it, too
+    std::uint64_t limit = 0;      // the first so many points, coarse nodes first; 0: all
     std::string polygonFile = {}; // GeoJSON in the cloud's CRS; empty: none
     // Names of the attributes to write, joined by commas (filter_text.hpp); none: all.
     std::optional<std::vector<std::string>> attributes = {};

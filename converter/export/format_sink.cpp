@@ -5,6 +5,7 @@
 #include "converter/export/ply_sink.hpp"
 #include "shared/base/text.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace stipple {
@@ -76,7 +77,8 @@ Result<FormatPlan> planFormat(ExportFormat format, bool toBeOverwritten, CloudRe
         plan.pointCount = count;
     }
     if (!plan.pointCount && filter.wantsEverything())
-        plan.pointCount = input.metadata.pointCount;
+        plan.pointCount = options.limit > 0 ? std::min(options.limit, input.metadata.pointCount)
+                                            : input.metadata.pointCount;
     return plan;
 }
 

@@ -74,7 +74,7 @@ Result<las::PointSummary> summarizeForLas(CloudReader& reader, const std::string
                                           const CloudFilter& filter, const SinkInput& input,
                                           const LasPlan& plan, const WalkOptions& options) {
     STIPPLE_TRY(columns, las::summaryColumnsFor(plan.options));
-    if (filter.wantsEverything()) {
+    if (filter.wantsEverything() && options.limit == 0) {
         int returnAttribute =
             columns.returnNumber < 0 ? -1 : input.attributes[static_cast<std::size_t>(columns.returnNumber)];
         if (auto known = summaryOfCloud(input.metadata, columns, returnAttribute, plan.shift))

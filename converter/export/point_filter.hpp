@@ -2,6 +2,8 @@
 #pragma once
 
 #include "shared/geometry/box.hpp"
+#include "shared/geometry/corridor.hpp"
+#include "shared/geometry/half_space.hpp"
 #include "shared/geometry/polygon.hpp"
 
 #include <memory>
@@ -16,11 +18,12 @@ struct ValueRange {
     friend bool operator==(const ValueRange&, const ValueRange&) = default;
 };
 
-// The stored value of an attribute lies in one of the ranges. Compared as double: exact for all but 64-bit
-// integers beyond 2^53. NaN lies in none.
+// The value of an attribute lies in one of the ranges: the stored one, or the one it means
+// (value_ranges.hpp). Compared as double: exact for all but 64-bit integers beyond 2^53. NaN lies in none.
 struct AttributeCondition {
     std::string attribute;
     std::vector<ValueRange> ranges;
+    bool ofMeaning = false; // offset + scale × stored; a value that means "no value" lies in none
 };
 
 struct PointFilter {
@@ -29,6 +32,10 @@ struct PointFilter {
     std::optional<BoxI> gridBox; // closed, in grid integers
     // In x and y, world units; edges belong to it (shared/geometry/polygon.hpp).
     std::shared_ptr<const PolygonRegion> region;
+    // A rotated box, world units (shared/geometry/oriented_box.hpp).
+    std::shared_ptr<const ConvexRegion> convex;
+    // What lies along a line, world units; its points have a station and an offset (corridor_attributes.hpp).
+    std::shared_ptr<const Corridor> corridor;
     std::vector<AttributeCondition> conditions;
     // World units; 0: all points. A level of detail: the points of the levels whose spacing (that of the
     // root, halved with each level) is at least this, so no two points of an inner node are nearer. Leaves

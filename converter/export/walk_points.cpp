@@ -46,6 +46,7 @@ Bytes rowsOf(const Bytes& column, const std::vector<std::uint32_t>& rows, std::s
 // A node's points, chosen; encoded unless there are too many for one piece.
 struct Chosen {
     std::uint64_t nodePoints = 0;
+    bool tested = false;
     CloudFilter::Dropped dropped;
     std::uint64_t taken = 0;
     PointBatch batch;
@@ -57,34 +58,60 @@ class Walk {
     Walk(CloudReader& reader, const std::string& name, const CloudFilter& filter,
          const std::vector<int>& attributes, PointSink* sink, const WalkOptions& options)
         : reader_(reader), name_(name), filter_(filter), sinkAttributes_(attributes), sink_(sink),
-          options_(options), read_(attributes), work_(options.threads) {
+          options_(options), work_(options.threads) {
+        const auto stored = static_cast<int>(schema().attributes.size());
+        for (int attribute : attributes)
+            (attribute < stored ? stored_ : derived_).push_back(attribute);
+        read_ = stored_;
         for (int attribute : filter.testedAttributes()) {
             auto place = std::find(read_.begin(), read_.end(), attribute);
             testedPlaces_.push_back(static_cast<std::size_t>(place - read_.begin()));
             if (place == read_.end())
                 read_.push_back(attribute);
         }
-        for (int attribute : attributes)
+        for (int attribute : stored_)
             sizes_.push_back(schema().attributes[static_cast<std::size_t>(attribute)].size());
+        sizes_.resize(attributes.size(), sizeof(double));
     }
 
     Result<WalkCounters> run() {
-        auto visited = reader_.visitWanted([&](const NodeEntry& entry) -> Result<bool> {
-            if (options_.stop && *options_.stop)
-                return Error{ErrorCode::cancelled, "interrupted", "", ""};
-            STIPPLE_CHECK(visit(entry));
-            return filter_.wantsBelow(entry);
-        });
+        STIPPLE_CHECK(checkDerived());
+        auto visited = reader_.visitWanted(
+            [&](const NodeEntry& entry) -> Result<bool> {
+                if (options_.stop && *options_.stop)
+                    return Error{ErrorCode::cancelled, "interrupted", "", ""};
+                STIPPLE_CHECK(visit(entry));
+                return filter_.wantsBelow(entry);
+            },
+            &isEnough_);
         if (!visited)
             return visited.error();
         while (work_.waiting() > 0)
             STIPPLE_CHECK(takeOne());
+        if (options_.limit > 0)
+            counters_.pointsTaken = std::min(counters_.pointsTaken, options_.limit); // of nodes only counted
         counters_.hierarchy = *visited;
         return counters_;
     }
 
   private:
     const Schema& schema() const { return reader_.metadata().schema; }
+
+    // Those behind the cloud's own are station and offset, and stand last.
+    Status checkDerived() const {
+        const auto stored = static_cast<int>(schema().attributes.size());
+        bool areLast = std::equal(derived_.rbegin(), derived_.rend(), sinkAttributes_.rbegin());
+        bool areKnown = std::all_of(derived_.begin(), derived_.end(), [&](int a) { return a < stored + 2; });
+        if (!derived_.empty() && (!areLast || !areKnown || !filter_.hasCorridor()))
+            return Error{ErrorCode::invalidArgument, "there are no such attributes", name_, ""};
+        return {};
+    }
+
+    // Points that are certain to be taken, also from nodes in work.
+    void addCertain(std::uint64_t points) {
+        certain_ += points;
+        isEnough_ = options_.limit > 0 && certain_ >= options_.limit;
+    }
 
     Status visit(const NodeEntry& entry) {
         using Verdict = CloudFilter::Verdict;
@@ -101,6 +128,7 @@ class Walk {
             return {};
         case Verdict::whole:
             counters_.whole.add(entry);
+            addCertain(entry.pointCount);
             if (!sink_) {
                 counters_.pointsTaken += entry.pointCount;
                 return {};
@@ -112,7 +140,7 @@ class Walk {
         }
         if (entry.pointCount == 0)
             return {};
-        return read(entry, verdict == Verdict::tested ? read_ : sinkAttributes_, verdict);
+        return read(entry, verdict == Verdict::tested ? read_ : stored_, verdict);
     }
 
     Status read(const NodeEntry& entry, const std::vector<int>& attributes, CloudFilter::Verdict verdict) {
@@ -124,11 +152,13 @@ class Walk {
         counters_.bytesRead += fetched.bytes.size();
         counters_.attributeBytesSkipped += entry.sizeBytes() - fetched.bytes.size();
         pointsWaiting_ += entry.pointCount;
+        pointsRead_ += entry.pointCount;
         auto node = std::make_shared<NodeBytes>(std::move(fetched));
         bool tested = verdict == CloudFilter::Verdict::tested;
-        work_.submit([this, node, tested]() -> Result<Chosen> {
+        bool mayBeCut = options_.limit > 0 && pointsRead_ > options_.limit;
+        work_.submit([this, node, tested, mayBeCut]() -> Result<Chosen> {
             try {
-                return choose(*node, tested);
+                return choose(*node, tested, mayBeCut);
             } catch (const std::bad_alloc&) {
                 return Error{ErrorCode::limitExceeded, "there is not enough memory to decode it",
                              cat(name_, ", node ", node->entry.key.text()), "use fewer threads"};
@@ -138,7 +168,7 @@ class Walk {
     }
 
     // On any thread.
-    Result<Chosen> choose(const NodeBytes& node, bool tested) const {
+    Result<Chosen> choose(const NodeBytes& node, bool tested, bool mayBeCut) const {
         auto decoded = decodeNode(reader_.metadata(), node);
         if (!decoded)
             return decoded.error().at(name_);
@@ -150,12 +180,19 @@ class Walk {
                          name_, ""};
         Chosen chosen;
         chosen.nodePoints = batch.size();
+        chosen.tested = tested;
         if (tested)
             batch = test(node.entry, std::move(batch), chosen.dropped);
         chosen.taken = batch.size();
         if (!sink_)
             return chosen;
-        if (batch.size() > maxPointsEncoded) {
+        if (!derived_.empty()) {
+            auto places = filter_.placesAlong(node.entry, batch.positions);
+            for (int attribute : derived_)
+                batch.columns.push_back(
+                    places[static_cast<std::size_t>(attribute) - schema().attributes.size()]);
+        }
+        if (batch.size() > maxPointsEncoded || mayBeCut) {
             chosen.batch = std::move(batch);
             return chosen;
         }
@@ -170,7 +207,7 @@ class Walk {
             columns.push_back(&batch.columns[place]);
         std::vector<std::uint32_t> rows = filter_.select(entry, batch.positions, columns, dropped);
         if (rows.size() == batch.size()) {
-            batch.columns.resize(sinkAttributes_.size());
+            batch.columns.resize(stored_.size());
             return batch;
         }
         return pick(batch, rows);
@@ -181,7 +218,7 @@ class Walk {
         picked.positions.reserve(rows.size());
         for (std::uint32_t row : rows)
             picked.positions.push_back(batch.positions[row]);
-        for (std::size_t i = 0; i < sinkAttributes_.size(); ++i)
+        for (std::size_t i = 0; i < stored_.size(); ++i)
             picked.columns.push_back(rowsOf(batch.columns[i], rows, sizes_[i]));
         return picked;
     }
@@ -193,6 +230,10 @@ class Walk {
         Chosen& chosen = *result;
         pointsWaiting_ -= chosen.nodePoints;
         pointsDone_ += chosen.nodePoints;
+        if (chosen.tested)
+            addCertain(chosen.taken);
+        if (sink_ && options_.limit > 0)
+            cut(chosen);
         counters_.pointsTaken += chosen.taken;
         counters_.dropped.bySpacing += chosen.dropped.bySpacing;
         counters_.dropped.byRegion += chosen.dropped.byRegion;
@@ -200,17 +241,25 @@ class Walk {
         if (chosen.encoded)
             STIPPLE_CHECK(sink_->write(std::move(*chosen.encoded)));
         else if (sink_)
-            STIPPLE_CHECK(writeInParts(chosen.batch));
+            STIPPLE_CHECK(writeInParts(chosen.batch, chosen.taken));
         if (options_.progress)
             options_.progress(pointsDone_);
         return {};
     }
 
-    Status writeInParts(const PointBatch& batch) {
-        for (std::size_t first = 0; first < batch.size(); first += maxPointsEncoded) {
+    // Leaves no more than the limit does.
+    void cut(Chosen& chosen) {
+        std::uint64_t left = std::min(chosen.taken, options_.limit - counters_.pointsTaken);
+        counters_.droppedByLimit += chosen.taken - left;
+        chosen.taken = left;
+    }
+
+    // The first `size` points.
+    Status writeInParts(const PointBatch& batch, std::size_t size) {
+        for (std::size_t first = 0; first < size; first += maxPointsEncoded) {
             if (options_.stop && *options_.stop)
                 return Error{ErrorCode::cancelled, "interrupted", "", ""};
-            std::size_t count = std::min(maxPointsEncoded, batch.size() - first);
+            std::size_t count = std::min(maxPointsEncoded, size - first);
             PointBatch part;
             part.positions.assign(batch.positions.begin() + static_cast<std::ptrdiff_t>(first),
                                   batch.positions.begin() + static_cast<std::ptrdiff_t>(first + count));
@@ -230,11 +279,13 @@ class Walk {
     const std::vector<int>& sinkAttributes_;
     PointSink* sink_; // null: points are counted only
     const WalkOptions& options_;
-    std::vector<int> read_;                 // the sink's attributes, then those only tests need
+    std::vector<int> stored_, derived_;     // the sink's attributes: the cloud's own, and those computed
+    std::vector<int> read_;                 // those of the cloud, then those only tests need
     std::vector<std::size_t> testedPlaces_; // of the filter's attributes among them
     std::vector<std::size_t> sizes_;        // bytes of the sink's attributes
     WalkCounters counters_;
-    std::uint64_t pointsWaiting_ = 0, pointsDone_ = 0;
+    std::uint64_t pointsWaiting_ = 0, pointsRead_ = 0, pointsDone_ = 0, certain_ = 0;
+    bool isEnough_ = false;            // the limit will be reached
     OrderedWork<Result<Chosen>> work_; // last: its threads end before what they use
 };
 
@@ -248,12 +299,28 @@ Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, co
 
 Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
                                   const WalkOptions& options) {
+    const std::uint64_t all = reader.metadata().pointCount;
     if (filter.wantsEverything())
-        return reader.metadata().pointCount;
+        return options.limit > 0 ? std::min(options.limit, all) : all;
     auto counted = Walk(reader, name, filter, {}, nullptr, options).run();
     if (!counted)
         return counted.error();
     return counted->pointsTaken;
+}
+
+Result<NodeTally> tallyNodes(CloudReader& reader, const CloudFilter& filter, const WalkOptions& options) {
+    NodeTally tally;
+    auto visited = reader.visitWanted([&](const NodeEntry& entry) -> Result<bool> {
+        if (options.stop && *options.stop)
+            return Error{ErrorCode::cancelled, "interrupted", "", ""};
+        CloudFilter::Verdict verdict = filter.verdictOn(entry);
+        if (verdict == CloudFilter::Verdict::whole || verdict == CloudFilter::Verdict::tested)
+            tally.add(entry);
+        return filter.wantsBelow(entry);
+    });
+    if (!visited)
+        return visited.error();
+    return tally;
 }
 
 } // namespace stipple

@@ -29,12 +29,13 @@ struct NodeTally {
 // What was done and what was not needed. Nodes whose hierarchy chunk was not read are in no tally but
 // in hierarchy.chunksSkipped.
 struct WalkCounters {
-    NodeTally whole;              // read, every point taken without a test
-    NodeTally tested;             // read, point by point
-    NodeTally outside;            // not read: no point of it in the region
-    NodeTally finer;              // not read: finer than the spacing asked for
-    NodeTally absent;             // not read: no point of the cloud has the attribute values asked for
-    CloudFilter::Dropped dropped; // points of tested nodes
+    NodeTally whole;                  // read, every point taken without a test
+    NodeTally tested;                 // read, point by point
+    NodeTally outside;                // not read: no point of it in the region
+    NodeTally finer;                  // not read: finer than the spacing asked for
+    NodeTally absent;                 // not read: no point of the cloud has the attribute values asked for
+    CloudFilter::Dropped dropped;     // points of tested nodes
+    std::uint64_t droppedByLimit = 0; // points of nodes read
     std::uint64_t pointsTaken = 0;
     std::uint64_t bytesRead = 0;             // of nodes
     std::uint64_t attributeBytesSkipped = 0; // blocks of nodes read whose attributes nobody asked for
@@ -43,12 +44,16 @@ struct WalkCounters {
 
 struct WalkOptions {
     int threads = 1;
+    // Of the points wanted, the first so many in the order of the file (coarse nodes come first); 0: all.
+    // Nodes behind them are not read, but for a few that were begun already.
+    std::uint64_t limit = 0;
     const std::atomic<bool>* stop = nullptr; // once true, the walk ends with `cancelled`
     // Points of the nodes done with. Called on the calling thread.
     std::function<void(std::uint64_t points)> progress = nullptr;
 };
 
-// `attributes`: those the sink takes, in its order. Does not finish the sink. Errors: those of the reader
+// `attributes`: those the sink takes, in its order; behind the cloud's own, station and offset where the
+// filter has a corridor (corridor_attributes.hpp). Does not finish the sink. Errors: those of the reader
 // (with the node and the file's name, `name`) and of the sink.
 Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
                                 const std::vector<int>& attributes, PointSink& sink,
@@ -57,5 +62,9 @@ Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, co
 // How many points walkPoints() would take, without reading more than that needs.
 Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
                                   const WalkOptions& options);
+
+// At least as many, told by the hierarchy alone: all points of the nodes that have to be read. Tells what a
+// walk would cost.
+Result<NodeTally> tallyNodes(CloudReader& reader, const CloudFilter& filter, const WalkOptions& options);
 
 } // namespace stipple

@@ -1,6 +1,7 @@
 // stipple export FILE -o OUT
 #include "converter/export/export_file.hpp"
 #include "converter/export/filter_text.hpp"
+#include "converter/export/region_options.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/base/text.hpp"
@@ -14,7 +15,9 @@ namespace stipple {
 
 namespace {
 struct ExportArguments {
-    std::string input, output, format, box, polygon, classes;
+    std::string input, output, format, box, rotatedBox, polygon, height, profile, classes, where;
+    double width = 0;
+    std::uint64_t limit = 0;
     std::vector<std::string> attributes;
     bool attributesGiven = false;
     double spacing = 0;
@@ -26,6 +29,53 @@ Error inOption(const char* option, const Error& error) {
     return error.at(option);
 }
 
+Status readRegion(const ExportArguments& arguments, PointFilter& filter) {
+    if (!arguments.box.empty()) {
+        auto box = boxFromText(arguments.box);
+        if (!box)
+            return inOption("--box", box.error());
+        filter.box = *box;
+    }
+    if (!arguments.rotatedBox.empty()) {
+        auto box = rotatedBoxFromText(arguments.rotatedBox);
+        if (!box)
+            return inOption("--rotated-box", box.error());
+        filter.convex = *box;
+    }
+    if (!arguments.height.empty()) {
+        auto heights = rangeFromText(arguments.height);
+        if (!heights)
+            return inOption("--height", heights.error());
+        limitHeights(filter, *heights);
+    }
+    if (!arguments.profile.empty()) {
+        auto line = lineFromText(arguments.profile);
+        if (!line)
+            return inOption("--profile", line.error());
+        auto corridor = Corridor::make(*line, arguments.width);
+        if (!corridor)
+            return inOption("--profile", corridor.error());
+        filter.corridor = std::make_shared<const Corridor>(*std::move(corridor));
+    }
+    return {};
+}
+
+Status readConditions(const ExportArguments& arguments, PointFilter& filter) {
+    if (!arguments.classes.empty()) {
+        auto classes = rangesFromText(arguments.classes);
+        if (!classes)
+            return inOption("--class", classes.error());
+        filter.conditions.push_back({std::string(attribute_names::classification), *classes});
+    }
+    if (!arguments.where.empty()) {
+        auto conditions = conditionsFromText(arguments.where);
+        if (!conditions)
+            return inOption("--where", conditions.error());
+        filter.conditions.insert(filter.conditions.end(), conditions->begin(), conditions->end());
+    }
+    return {};
+}
+
 Result<ExportOptions> optionsOf(const ExportArguments& arguments) {
     ExportOptions options;
     if (!arguments.format.empty()) {
@@ -35,20 +85,11 @@ Result<ExportOptions> optionsOf(const ExportArguments& arguments) {
                          cat("\"", arguments.format, "\" is no format that can be exported"), "--format",
                          "choose las, laz, ply or csv"};
     }
-    if (!arguments.box.empty()) {
-        auto box = boxFromText(arguments.box);
-        if (!box)
-            return inOption("--box", box.error());
-        options.filter.box = *box;
-    }
-    if (!arguments.classes.empty()) {
-        auto classes = rangesFromText(arguments.classes);
-        if (!classes)
-            return inOption("--class", classes.error());
-        options.filter.conditions.push_back({std::string(attribute_names::classification), *classes});
-    }
+    STIPPLE_CHECK(readRegion(arguments, options.filter));
+    STIPPLE_CHECK(readConditions(arguments, options.filter));
     options.polygonFile = arguments.polygon;
     options.filter.spacing = arguments.spacing;
+    options.limit = arguments.limit;
     if (arguments.attributesGiven)
         options.attributes = arguments.attributes;
     options.threads = arguments.threads;
@@ -68,7 +109,8 @@ cli::Json countersJson(const WalkCounters& counters) {
     json["attributeBytesSkipped"] = counters.attributeBytesSkipped;
     json["pointsDropped"] = {{"bySpacing", counters.dropped.bySpacing},
                              {"byRegion", counters.dropped.byRegion},
-                             {"byAttribute", counters.dropped.byAttribute}};
+                             {"byAttribute", counters.dropped.byAttribute},
+                             {"byLimit", counters.droppedByLimit}};
     json["hierarchy"] = {{"chunksRead", counters.hierarchy.chunksRead},
                          {"bytesRead", counters.hierarchy.bytesRead},
                          {"chunksSkipped", counters.hierarchy.chunksSkipped},
@@ -140,9 +182,22 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
                      "Points in a box: xmin,ymin,xmax,ymax or xmin,ymin,zmin,xmax,ymax,zmax, in the cloud's "
                      "coordinates; its sides belong to it");
     verb->add_option(
+        "--rotated-box", arguments->rotatedBox,
+        "Points in a box that is turned: its centre, its sizes and degrees counter-clockwise about z, "
+        "x,y,z;dx,dy,dz;30; any height without z and dz; instead of degrees a quaternion, qx,qy,qz,qw");
+    verb->add_option(
         "--polygon", arguments->polygon,
         "Points in the polygons of a GeoJSON file, in the cloud's coordinates (not longitude and "
         "latitude); edges, also those of holes, belong to them");
+    verb->add_option("--height", arguments->height, "Points between two heights: 10..20, 10.. or ..20");
+    CLI::Option* profile = verb->add_option("--profile", arguments->profile,
+                                            "Points along a line, x,y;x,y;…, within half of --width of it, "
+                                            "with two attributes more: Station (along the "
+                                            "line) and Offset (positive to its left)");
+    CLI::Option* width =
+        verb->add_option("--width", arguments->width, "The width of the profile")->check(CLI::PositiveNumber);
+    profile->needs(width);
+    width->needs(profile);
     verb->add_option(
             "--spacing", arguments->spacing,
             "A level of detail: points of the levels whose minimum distance is at least this, in the "
@@ -152,6 +207,13 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
             "Other options choose among these points")
         ->check(CLI::PositiveNumber);
     verb->add_option("--class", arguments->classes, "Points of these classes: 2,6 or 3-5, or both");
+    verb->add_option(
+        "--where", arguments->where,
+        "Points whose values are in ranges: \"Intensity:100..2000;Return Number:1,3..\"; of scaled "
+        "attributes the values they mean");
+    verb->add_option("--limit", arguments->limit,
+                     "The first so many of these points; coarse nodes come first")
+        ->check(CLI::PositiveNumber);
     CLI::Option* attributes =
         verb->add_option("--attributes", arguments->attributes,
                          "Write these attributes only, names joined by commas (none: \"\")")

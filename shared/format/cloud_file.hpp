@@ -89,9 +89,10 @@ class CloudReader {
     virtual const CloudMetadata& metadata() const = 0;
     // Nodes chunk by chunk; stops at the first error, the visitor's own included. `visit` answers whether
     // anything below the node is wanted: where it is not, the hierarchy chunk below is not read. (Nodes below
-    // that lie in a chunk that was read are visited all the same; they cost nothing.)
-    virtual Result<HierarchyCounters>
-    visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit) = 0;
+    // that lie in a chunk that was read are visited all the same; they cost nothing.) Once `*isEnough` is
+    // true, nothing further is visited or read.
+    virtual Result<HierarchyCounters> visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit,
+                                                  const bool* isEnough = nullptr) = 0;
     // Every node.
     Status visitNodes(const std::function<Status(const NodeEntry&)>& visit);
     // Reads what decodeNode() needs for some attributes, and no other byte of the node.

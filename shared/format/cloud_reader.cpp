@@ -47,30 +47,38 @@ class Reader final : public CloudReader {
     const FileHeader& header() const override { return header_; }
     const CloudMetadata& metadata() const override { return metadata_; }
 
-    Result<HierarchyCounters>
-    visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit) override {
+    Result<HierarchyCounters> visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit,
+                                          const bool* isEnough) override {
         // A chunk is deeper than the one that names it, so a file whose chunks name each other in a circle
         // ends at the deepest level; the limit is for one that repeats itself sideways.
         std::deque<ChunkPlace> wanted{rootChunkPlace(header_)};
         HierarchyCounters counters;
+        auto skip = [&](const ByteRange& chunk) {
+            ++counters.chunksSkipped;
+            counters.bytesSkipped += chunk.size;
+        };
         while (!wanted.empty()) {
             ChunkPlace next = wanted.front();
             wanted.pop_front();
+            if (isEnough && *isEnough) {
+                skip(next.range);
+                continue;
+            }
             ++counters.chunksRead;
             counters.bytesRead += next.range.size;
             if (counters.bytesRead > header_.fileBytes)
                 return Error{ErrorCode::corrupt, "the hierarchy chunks overlap", source_.name(), {}};
             STIPPLE_TRY(nodes, readHierarchyChunk(source_, header_, metadata_, next));
             for (const NodeEntry& node : nodes) {
+                if (isEnough && *isEnough)
+                    break;
                 STIPPLE_TRY(below, visit(node));
                 if (node.childChunk.size == 0)
                     continue;
-                if (below) {
+                if (below)
                     wanted.push_back(childChunkPlace(node));
-                } else {
-                    ++counters.chunksSkipped;
-                    counters.bytesSkipped += node.childChunk.size;
-                }
+                else
+                    skip(node.childChunk);
             }
         }
         return counters;

@@ -111,4 +111,45 @@ ExportResult exportOrFail(const std::string& input, const std::string& output,
                           const ExportOptions& options = {});
 std::string textOf(const std::string& path);
 
+// A flat town of 85 nodes on four levels, on a grid whose world coordinates double holds exactly.
+inline SmallCloudOptions quarterGrid() {
+    SmallCloudOptions options;
+    options.levels = 4;
+    options.grid = {{0.25, 0.25, 0.25}, {500000, 4000000, 0}};
+    options.rootCube = {{-300, -200, 0}, 12};
+    return options;
+}
+
+// Exports as LAS and compares with the rows that `wanted` picks; the tallies have to add up.
+template <class Wanted>
+WalkCounters compareExport(const SmallCloudFile& file, const PointFilter& filter, Wanted wanted) {
+    AllPoints all = allPoints(file.path);
+    PointBatch expected = rowsWhere(all, wanted);
+    ExportOptions options;
+    options.filter = filter;
+    options.threads = 2;
+    ExportResult result = exportOrFail(file.path, file.folder / "out.las", options);
+    LasContent las = readLas(file.folder / "out.las");
+    CHECK(result.points == expected.size());
+    PointBatch found; // the columns the cloud has
+    found.positions = las.points.positions;
+    for (const Attribute& attribute : all.metadata.schema.attributes) {
+        int column = las.schema.find(attribute.name);
+        REQUIRE(column >= 0);
+        found.columns.push_back(las.points.columns[static_cast<std::size_t>(column)]);
+    }
+    requireEqual(found, expected);
+
+    const WalkCounters& c = result.counters;
+    CHECK(c.pointsTaken == expected.size());
+    CHECK(c.whole.points + c.tested.points ==
+          c.pointsTaken + c.dropped.bySpacing + c.dropped.byRegion + c.dropped.byAttribute);
+    CHECK(c.whole.bytes + c.tested.bytes == c.bytesRead + c.attributeBytesSkipped);
+    return c;
+}
+
+inline std::uint64_t knownNodes(const WalkCounters& c) {
+    return c.whole.nodes + c.tested.nodes + c.outside.nodes + c.finer.nodes + c.absent.nodes;
+}
+
 } // namespace stipple::test

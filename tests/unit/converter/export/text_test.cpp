@@ -2,6 +2,7 @@
 #include "converter/export/decimal.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/minimum_distance.hpp"
+#include "converter/export/value_ranges.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -111,6 +112,103 @@ TEST_CASE("classes are numbers and ranges") {
         REQUIRE_FALSE(refused.ok());
         CHECK(refused.error().what.find("is no class and no range of classes") != std::string::npos);
     }
+}
+
+TEST_CASE("ranges are closed, and open where nothing stands") {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    auto range = [](const char* text) {
+        auto read = rangeFromText(text);
+        return read ? *read : ValueRange{1, 0};
+    };
+    CHECK(range("1..2.5") == ValueRange{1, 2.5});
+    CHECK(range("-5..-1") == ValueRange{-5, -1});
+    CHECK(range("3..") == ValueRange{3, infinity});
+    CHECK(range("..3") == ValueRange{-infinity, 3});
+    CHECK(range("7") == ValueRange{7, 7});
+    CHECK(range(" 1 .. 2 ") == ValueRange{1, 2});
+    for (const char* wrong :
+         {"", "..", "2..1", "x", "1..x", "nan", "1..inf", "-inf..1", "1..2..3", "1...", "1e999"}) {
+        INFO(wrong);
+        CHECK_FALSE(rangeFromText(wrong).ok());
+    }
+}
+
+TEST_CASE("conditions are names and ranges") {
+    auto shown = [](const char* text) {
+        auto conditions = conditionsFromText(text);
+        if (!conditions)
+            return "refused: " + conditions.error().what;
+        std::string all;
+        for (const AttributeCondition& condition : *conditions) {
+            CHECK(condition.ofMeaning);
+            all += "[" + condition.attribute;
+            for (const ValueRange& range : condition.ranges)
+                all += " " + std::to_string(static_cast<int>(range.min)) + "-" +
+                         std::to_string(static_cast<int>(range.max));
+            all += "]";
+        }
+        return all;
+    };
+    CHECK(shown("Intensity:100..200") == "[Intensity 100-200]");
+    CHECK(shown("Intensity:1..2,5;Return Number : 1") == "[Intensity 1-2 5-5][Return Number 1-1]");
+    CHECK(shown("a:b:1;c;d:2") == "[a:b 1-1][c;d 2-2]"); // names of any kind
+    CHECK(shown("a:1;") == "refused: it names no attribute");
+    CHECK(shown("") == "refused: it names no attribute");
+    CHECK(shown(":1") == "refused: it names no attribute");
+    CHECK(shown("Intensity") == "refused: it names no attribute");
+    CHECK(shown("Intensity:") == "refused: a range has a limit");
+    CHECK(shown("Intensity:5..4") == "refused: the range is empty");
+    CHECK(shown("a:x;b:1") == "[a:x;b 1-1]");
+}
+
+TEST_CASE("lines are points") {
+    auto line = lineFromText("1,2;3.5,-4;5e1,6");
+    REQUIRE(line.ok());
+    CHECK(*line == std::vector<Point2d>{{1, 2}, {3.5, -4}, {50, 6}});
+    for (const char* wrong : {"", "1,2", "1,2;3", "1,2;3,4,5", "1,2;3,x", "1,2;", "1,2;3,inf", "1 2;3 4"}) {
+        INFO(wrong);
+        CHECK_FALSE(lineFromText(wrong).ok());
+    }
+}
+
+TEST_CASE("rotated boxes are a centre, sizes and a rotation") {
+    auto holds = [](const char* text, Vec3d p) {
+        auto box = rotatedBoxFromText(text);
+        REQUIRE(box.ok());
+        return (*box)->contains(p);
+    };
+    CHECK(holds("10,20,5;8,2,4;90", {10, 24, 7}));
+    CHECK_FALSE(holds("10,20,5;8,2,4;90", {14, 20, 5}));
+    CHECK(holds("10,20;8,2", {14, 21, 1e6}));
+    CHECK(holds("10,20,5;8,2,4;0,0,1,1", {10, 23.9, 5}));
+    for (const char* wrong : {"", "1,2", "1,2;3,4;5;6", "1,2;3,x", "1,2;3,4;0,0,0,1", "1,2,3;4,5"}) {
+        INFO(wrong);
+        CHECK_FALSE(rotatedBoxFromText(wrong).ok());
+    }
+}
+
+TEST_CASE("ranges of meanings become ranges of stored values") {
+    Attribute attribute{"a", AttributeType::i32};
+    CHECK(storedRanges(attribute, {{1.5, 2.5}}) == std::vector<ValueRange>{{1.5, 2.5}});
+    attribute.scale = 0.01;
+    attribute.offset = 100;
+    CHECK(storedRanges(attribute, {{100.07, 100.29}}) == std::vector<ValueRange>{{7, 29}});
+    CHECK(storedRanges(attribute, {{100.071, 100.289}}) == std::vector<ValueRange>{{8, 28}});
+    attribute.scale = -0.5;
+    CHECK(storedRanges(attribute, {{99, 100.2}}) == std::vector<ValueRange>{{0, 2}});
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    CHECK(storedRanges(attribute, {{99, infinity}}) == std::vector<ValueRange>{{-infinity, 2}});
+    attribute.noData = 1;
+    CHECK(storedRanges(attribute, {{99, 100.2}}) == std::vector<ValueRange>{{0, 0}, {2, 2}});
+    CHECK(storedRanges(attribute, {{99.5, 99.5}}).empty());
+    Attribute real{"r", AttributeType::f64};
+    real.noData = -9999;
+    CHECK(storedRanges(real, {{-9999, -9999}}).empty());
+    CHECK(storedRanges(real, {{0, 1}}) == std::vector<ValueRange>{{0, 1}});
+    auto open = storedRanges(real, {{-infinity, 0}});
+    REQUIRE(open.size() == 2);
+    CHECK(open[0].max < -9999);
+    CHECK(open[1].min > -9999);
 }
 
 TEST_CASE("attributes are found by name, in any case, commas included") {
