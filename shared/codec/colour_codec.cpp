@@ -18,6 +18,10 @@ constexpr std::size_t channelOrder[3] = {1, 0, 2};
 std::uint32_t unitOf(ColourWidth width) {
     return width == ColourWidth::high ? 256 : width == ColourWidth::repeated ? 257 : 1;
 }
+// A value of that width divided by its unit is the value shifted so far.
+int shiftOf(ColourWidth width) {
+    return width == ColourWidth::high || width == ColourWidth::repeated ? 8 : 0;
+}
 
 // Predictions for the points of a stratum > 0 from the values of the earlier ones, `known`.
 template <class T>
@@ -47,26 +51,27 @@ void writePlane(ByteWriter& to, std::span<const T> values) {
 // The stratum's values of one channel, and the earlier strata's, in Morton order.
 template <class T>
 std::vector<T> every(std::span<const std::uint16_t> values, std::size_t channels, std::size_t channel,
-                     std::size_t first, std::size_t step, std::uint32_t unit) {
-    std::vector<T> part;
-    part.reserve(values.size() / channels / step + 1);
-    for (std::size_t i = first * channels + channel; i < values.size(); i += step * channels)
-        part.push_back(static_cast<T>(values[i] / unit));
+                     std::size_t first, std::size_t step, int shift) {
+    const std::size_t count = values.size() / channels;
+    std::vector<T> part(first < count ? (count - first - 1) / step + 1 : 0);
+    const std::uint16_t* from = values.data() + first * channels + channel;
+    for (std::size_t j = 0; j < part.size(); ++j)
+        part[j] = static_cast<T>(from[j * step * channels] >> shift);
     return part;
 }
 
 template <class T>
 std::vector<T> residuals(std::span<const std::uint16_t> values, std::size_t channels, std::size_t channel,
-                         std::uint32_t unit, int stratum, NeighbourChoices choices) {
+                         int shift, int stratum, NeighbourChoices choices) {
     std::size_t first = stratumFirst(stratum), step = stratumStep(stratum);
-    std::vector<T> own = every<T>(values, channels, channel, first, step, unit);
+    std::vector<T> own = every<T>(values, channels, channel, first, step, shift);
     if (stratum == 0) {
         T before = 0;
         for (T& value : own)
             value = static_cast<T>(value - std::exchange(before, value));
         return own;
     }
-    std::vector<T> known = every<T>(values, channels, channel, 0, 2 * first, unit), predicted(own.size());
+    std::vector<T> known = every<T>(values, channels, channel, 0, 2 * first, shift), predicted(own.size());
     predictBetween<T>(known, choices, predicted);
     for (std::size_t j = 0; j < own.size(); ++j)
         own[j] = static_cast<T>(own[j] - predicted[j]);
@@ -74,14 +79,14 @@ std::vector<T> residuals(std::span<const std::uint16_t> values, std::size_t chan
 }
 
 template <class T>
-void encodeAs(ByteWriter& to, std::span<const std::uint16_t> values, std::size_t channels, std::uint32_t unit,
+void encodeAs(ByteWriter& to, std::span<const std::uint16_t> values, std::size_t channels, int shift,
               int stratum, NeighbourChoices choices) {
     ByteWriter predicted;
     predicted.write(Coding::predicted);
     std::vector<T> green;
     for (std::size_t c = 0; c < channels; ++c) {
         std::size_t channel = channels == 1 ? 0 : channelOrder[c];
-        std::vector<T> residual = residuals<T>(values, channels, channel, unit, stratum, choices);
+        std::vector<T> residual = residuals<T>(values, channels, channel, shift, stratum, choices);
         if (c == 0)
             green = residual;
         else
@@ -92,7 +97,7 @@ void encodeAs(ByteWriter& to, std::span<const std::uint16_t> values, std::size_t
     ByteWriter plain;
     if (channels == 1) { // intensities are often noise, which differences only widen
         plain.write(Coding::plain);
-        writePlane<T>(plain, every<T>(values, 1, 0, stratumFirst(stratum), stratumStep(stratum), unit));
+        writePlane<T>(plain, every<T>(values, 1, 0, stratumFirst(stratum), stratumStep(stratum), shift));
     }
     to.writeBytes(channels == 1 && plain.size() < predicted.size() ? plain.bytes() : predicted.bytes());
 }
@@ -163,9 +168,9 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, int cha
         to.write(width);
     auto count = static_cast<std::size_t>(channels);
     if (width == ColourWidth::wide)
-        encodeAs<std::uint16_t>(to, values, count, 1, stratum, choices);
+        encodeAs<std::uint16_t>(to, values, count, 0, stratum, choices);
     else
-        encodeAs<std::uint8_t>(to, values, count, unitOf(width), stratum, choices);
+        encodeAs<std::uint8_t>(to, values, count, shiftOf(width), stratum, choices);
 }
 
 ColourDecoder::ColourDecoder(std::uint32_t pointCount, int channels, int strata)

@@ -10,8 +10,10 @@ namespace {
 
 std::array<std::uint32_t, 3> quantised(const KeyLayout& layout, const Vec3<std::uint32_t>& point) {
     std::array<std::uint32_t, 3> q{};
-    for (std::size_t a = 0; a < 3; ++a)
-        q[a] = (point[static_cast<int>(a)] - layout.origin[a]) / layout.step[a];
+    for (std::size_t a = 0; a < 3; ++a) {
+        std::uint32_t steps = point[static_cast<int>(a)] - layout.origin[a];
+        q[a] = layout.step[a] == 1 ? steps : steps / layout.step[a];
+    }
     return q;
 }
 
@@ -30,21 +32,46 @@ using Quantised = std::vector<std::array<std::uint32_t, 3>>;
 // Sorted by key only.
 void sortKeys(const KeyLayout& layout, const Quantised& points, std::vector<KeyedIndex>& keyed) {
     BitPermutation toKey = keyFromPacked(layout);
-    for (KeyedIndex& point : keyed)
+    bool sorted = true;
+    std::uint64_t before = 0;
+    for (KeyedIndex& point : keyed) {
         point.key = toKey(layout.pack(points[point.index]));
-    sortByKey(keyed, layout.keyBits);
+        sorted = sorted && before <= point.key;
+        before = point.key;
+    }
+    if (!sorted)
+        sortByKey(keyed, layout.keyBits);
 }
 
-// Runs of consecutive points of `sorted`, 8192 points at most, by which layouts are compared. A run is
-// long enough to span many points along each axis.
-std::vector<std::vector<KeyedIndex>> sampleRuns(const std::vector<KeyedIndex>& sorted) {
-    constexpr std::size_t runs = 4, runPoints = 2048;
-    if (sorted.size() <= runs * runPoints)
-        return {sorted};
+// By the Morton code of the coordinates themselves, z before y before x.
+bool isBefore(const Vec3<std::uint32_t>& a, const Vec3<std::uint32_t>& b) {
+    const std::uint32_t x = a.x ^ b.x, y = a.y ^ b.y, z = a.z ^ b.z;
+    auto isLower = [](std::uint32_t v, std::uint32_t w) { return v < w && v < (v ^ w); }; // the highest bit
+    if (!isLower(z, y) && !isLower(z, x))
+        return a.z < b.z;
+    return isLower(y, x) ? a.x < b.x : a.y < b.y;
+}
+
+// In that order: points mostly come so, and then this takes no time.
+std::vector<std::uint32_t> mortonOrder(std::span<const Vec3<std::uint32_t>> points) {
+    std::vector<std::uint32_t> order(points.size());
+    std::iota(order.begin(), order.end(), 0u);
+    if (!std::is_sorted(points.begin(), points.end(), isBefore))
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return isBefore(points[a], points[b]); });
+    return order;
+}
+
+// Short runs of consecutive points, by which layouts are compared: eight of them, spread evenly. Longer ones,
+// or more, choose no better.
+std::vector<std::vector<KeyedIndex>> sampleRuns(const std::vector<KeyedIndex>& ordered) {
+    constexpr std::size_t runs = 8, runPoints = 128;
+    if (ordered.size() <= runs * runPoints)
+        return {ordered};
     std::vector<std::vector<KeyedIndex>> sample;
     for (std::size_t r = 0; r < runs; ++r) {
         auto from =
-            sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - runPoints) * r / (runs - 1));
+            ordered.begin() + static_cast<std::ptrdiff_t>((ordered.size() - runPoints) * r / (runs - 1));
         sample.emplace_back(from, from + static_cast<std::ptrdiff_t>(runPoints));
     }
     return sample;
@@ -69,8 +96,7 @@ std::uint64_t keyCost(const KeyLayout& layout, const Quantised& points,
 }
 
 // Raises one axis for as long as that makes the keys' differences smaller.
-void chooseLift(KeyLayout& layout, const Quantised& points, const std::vector<KeyedIndex>& sorted) {
-    auto runs = sampleRuns(sorted);
+void chooseLift(KeyLayout& layout, const Quantised& points, std::vector<std::vector<KeyedIndex>> runs) {
     std::uint64_t best = keyCost(layout, points, runs);
     KeyLayout chosen = layout;
     for (std::size_t axis : {2u, 1u, 0u}) {
@@ -98,14 +124,13 @@ SortedPoints sortPoints(std::span<const Vec3<std::uint32_t>> points) {
     KeyLayout& layout = sorted.layout;
     Quantised quantisedPoints(points.size());
     std::vector<KeyedIndex> keyed(points.size());
+    std::vector<std::uint32_t> order = mortonOrder(points);
     for (std::size_t i = 0; i < points.size(); ++i) {
         quantisedPoints[i] = quantised(layout, points[i]);
-        keyed[i].index = static_cast<std::uint32_t>(i);
+        keyed[i].index = order[i];
     }
+    chooseLift(layout, quantisedPoints, sampleRuns(keyed));
     sortKeys(layout, quantisedPoints, keyed);
-    chooseLift(layout, quantisedPoints, keyed);
-    if (layout.lift != decltype(layout.lift){})
-        sortKeys(layout, quantisedPoints, keyed);
     auto lowOf = [&](const KeyedIndex& point) { return packLows(layout, quantisedPoints[point.index]); };
     if (layout.lowBits > 0)
         for (std::size_t i = 0, end = 0; i < keyed.size(); i = end) {

@@ -107,6 +107,12 @@ std::vector<std::uint16_t> sortedColour(const std::vector<int>& attributes, cons
     return values;
 }
 
+// Whether each value is the one before it; of many attributes of many scans they all are.
+bool repeatsOneValue(ByteSpan column, std::size_t size) {
+    return column.size() <= size ||
+           std::memcmp(column.data(), column.data() + size, column.size() - size) == 0;
+}
+
 Bytes attributeBlock(const CloudMetadata& metadata, const AttributeBlock& block, const PointBatch& points,
                      const SortedPoints& sorted) {
     ByteWriter payload;
@@ -114,8 +120,11 @@ Bytes attributeBlock(const CloudMetadata& metadata, const AttributeBlock& block,
     for (int a : block.attributes) {
         const Attribute& attribute = metadata.schema.attributes[static_cast<std::size_t>(a)];
         const Bytes& column = points.columns[static_cast<std::size_t>(a)];
-        allZero = allZero && std::all_of(column.begin(), column.end(), [](std::uint8_t b) { return b == 0; });
-        encodeColumn(payload, sortedColumn(sorted, column, attribute.size()),
+        const bool isConstant = repeatsOneValue(column, attribute.size());
+        auto first = ByteSpan(column).first(std::min(column.size(), attribute.size()));
+        allZero = allZero && isConstant &&
+                  std::all_of(first.begin(), first.end(), [](std::uint8_t b) { return b == 0; });
+        encodeColumn(payload, isConstant ? column : sortedColumn(sorted, column, attribute.size()),
                      attributeTypeSize(attribute.type), static_cast<std::size_t>(attribute.components));
     }
     return allZero ? Bytes{} : framePaddedBlock(payload.bytes());

@@ -4,7 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -116,9 +118,32 @@ TEST_CASE("the decoder knows which neighbour is nearer, as the encoder does") {
     }
 }
 
-TEST_CASE("a plane takes fewer bits with its flat axis raised") {
-    const Shape plane = shapes()[7];
-    CHECK(sortPoints(plane.points).layout.lift[2] > 0);
+TEST_CASE("the axis along which a slope is flat is raised, and no other") {
+    std::mt19937 random(12);
+    Points points(20000);
+    for (auto& p : points) {
+        p = {static_cast<std::uint32_t>(random() % (1u << 20)),
+             static_cast<std::uint32_t>(random() % (1u << 20)), 0};
+        p.z = 500000 + p.x / 50 + p.y / 90;
+    }
+    SortedPoints sorted = sortPoints(points);
+    CHECK(sorted.layout.lift[2] > 0);
+    Points turned = points; // z is where x was: the same slope, with another axis flat
+    for (auto& p : turned)
+        std::swap(p.x, p.z);
+    SortedPoints sortedTurned = sortPoints(turned);
+    CHECK(sortedTurned.layout.lift[0] > 0);
+    CHECK(sortedTurned.layout.lift[2] == 0);
+}
+
+TEST_CASE("the order in which points come in leaves no trace") {
+    std::mt19937 random(13);
+    for (const Shape& shape : shapes()) {
+        INFO(shape.name);
+        Points shuffled = shape.points;
+        std::shuffle(shuffled.begin(), shuffled.end(), random);
+        CHECK(encode(sortPoints(shape.points), strataCount) == encode(sortPoints(shuffled), strataCount));
+    }
 }
 
 TEST_CASE("damaged positions are errors or points inside the node") {
