@@ -31,7 +31,7 @@ Result<Tcp::endpoint> resolve(const std::string& host, std::uint16_t port) {
 class BeastServer final : public Server {
   public:
     BeastServer(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log)
-        : state_(options.limits) {
+        : state_(options.limits), certificatePath_(options.certificatePath), keyPath_(options.keyPath) {
         state_.handler = std::move(handler);
         state_.log = std::move(log);
         int cores = static_cast<int>(std::thread::hardware_concurrency());
@@ -75,11 +75,21 @@ class BeastServer final : public Server {
         std::string host = address.to_string();
         if (address.is_unspecified()) // listening everywhere is no address to go to
             host = address.is_v6() ? "::1" : "127.0.0.1";
-        return address.is_v6() ? cat("http://[", host, "]:", port(), "/")
-                               : cat("http://", host, ":", port(), "/");
+        const char* scheme = certificatePath_.empty() ? "http" : "https";
+        return address.is_v6() ? cat(scheme, "://[", host, "]:", port(), "/")
+                               : cat(scheme, "://", host, ":", port(), "/");
     }
     int openConnections() const override { return state_.openConnections; }
     JobCounts jobCounts() const override { return state_.jobs.counts(); }
+
+    Status reloadCertificate() override {
+        if (certificatePath_.empty() && keyPath_.empty())
+            return {};
+        STIPPLE_TRY(loaded, TlsContext::load(certificatePath_, keyPath_));
+        std::lock_guard lock(state_.tlsMutex);
+        state_.tlsContext = loaded;
+        return {};
+    }
 
     void stop() override {
         net::post(loops_.front()->context(), [this] { stopAccepting(); });
@@ -138,6 +148,7 @@ class BeastServer final : public Server {
     std::vector<std::unique_ptr<Loop>> loops_;
     std::unique_ptr<Acceptor> acceptor_; // used on the first loop once it runs
     std::unique_ptr<Timer> pause_;
+    const std::string certificatePath_, keyPath_;
     Tcp::endpoint endpoint_;
     bool isClosed_ = false; // under drainedMutex
 };
@@ -148,6 +159,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
                                               std::shared_ptr<const RequestHandler> handler, RequestLog log) {
     std::signal(SIGPIPE, SIG_IGN);
     auto server = std::make_unique<BeastServer>(options, std::move(handler), std::move(log));
+    STIPPLE_CHECK(server->reloadCertificate());
     STIPPLE_CHECK(server->listen(options.host, options.port));
     return std::unique_ptr<Server>(std::move(server));
 }

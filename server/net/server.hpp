@@ -33,24 +33,30 @@ struct ServerLimits {
 };
 
 struct ServerOptions {
-    std::string host = "127.0.0.1"; // address or name; loopback: nobody else can connect
-    std::uint16_t port = 0;         // 0: any free one
-    int threads = 0;                // 0: one for each core, at most 8
+    std::string host = "127.0.0.1";       // address or name; loopback: nobody else can connect
+    std::uint16_t port = 0;               // 0: any free one
+    int threads = 0;                      // 0: one for each core, at most 8
+    std::string certificatePath, keyPath; // PEM; both: https, neither: http
     ServerLimits limits;
 };
 
 class Server {
   public:
-    // Binds, listens and runs. Errors (networkFailed): the host is none of this machine's, the port is taken.
+    // Binds, listens and runs. Errors: networkFailed (the host is none of this machine's, the port is taken);
+    // what TlsContext::load says of certificate and key.
     static Result<std::unique_ptr<Server>>
     start(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log);
     // Cuts what still runs and waits for the threads.
     virtual ~Server() = default;
 
     virtual std::uint16_t port() const = 0;
-    virtual std::string address() const = 0; // "http://127.0.0.1:8017/"
+    virtual std::string address() const = 0; // "http://127.0.0.1:8017/", or https
     virtual int openConnections() const = 0;
     virtual JobCounts jobCounts() const = 0;
+
+    // Reads certificate and key again, for connections to come; those that are open keep theirs, and where
+    // the files can't be used, so does everything.
+    virtual Status reloadCertificate() = 0;
 
     // First step of ending: accepts nothing more, closes idle connections, lets answers finish.
     virtual void stop() = 0;

@@ -10,6 +10,7 @@ void addServeVerb(CLI::App& program, cli::Action& action) {
         std::vector<std::string> paths;
     };
     auto options = std::make_shared<Options>();
+    options->serving.reloadsOnHangUp = true;
     CLI::App* verb = program.add_subcommand("serve", "Serve the page and clouds over HTTP");
     verb->add_option("PATH", options->paths, ".stipple files, or folders that hold some")->required();
     server::addServingOptions(*verb, options->serving);

@@ -13,13 +13,13 @@
 namespace stipple::server {
 
 struct ServingOptions {
-    std::string host = "127.0.0.1";
-    std::uint16_t port = 8017;
+    ServerOptions server;   // its port is 8017 unless chosen otherwise
     std::string pageFolder; // empty: the built page beside the program or in the source tree
     bool asJson = false;
     bool logsRequests = false;
     int graceSeconds = 10;
-    ServerLimits limits;
+    bool reloadsOnHangUp =
+        false; // SIGHUP, as services have it; otherwise it ends, as a closed terminal should
 };
 
 void addServingOptions(CLI::App& verb, ServingOptions& options);

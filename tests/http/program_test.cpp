@@ -1,11 +1,13 @@
 // `stipple serve` as a program: its line, its log, its errors, its end, and its life without descriptors.
 #include "tests/http/support/raw_client.hpp"
+#include "tests/http/support/test_certificate.hpp"
 #include "tests/http/support/test_server.hpp"
 
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sys/resource.h>
@@ -139,6 +141,46 @@ TEST_CASE("serve refuses what it can't serve, with a sentence and a code") {
         Program({"serve", folder.cloud().string(), "--port", std::to_string(other.port())}, errors).wait() ==
         6);
     CHECK(readFile(errors).find("--port") != std::string::npos);
+}
+
+TEST_CASE("serve speaks https with --cert and --key, and reads them again on SIGHUP") {
+    TestFolder folder;
+    fs::path errors = folder.path() / "errors.txt";
+    TestCertificate used = makeCertificate(folder.path(), "first"),
+                    other = makeCertificate(folder.path(), "second");
+    auto arguments = [&](const std::string& key) {
+        return std::vector<std::string>{"serve",  folder.cloud().string(), "--port", "0", "--json",
+                                        "--cert", used.certificatePath,    "--key",  key};
+    };
+    CHECK(Program(arguments(other.keyPath), errors).wait() == 2);
+    CHECK(readFile(errors).find("the key does not belong to the certificate") != std::string::npos);
+    CHECK(Program({"serve", folder.cloud().string(), "--cert", used.certificatePath}, errors).wait() == 2);
+
+    Program program(arguments(used.keyPath), errors);
+    std::string line = program.line();
+    CHECK(line.find("\"address\":\"https://") != std::string::npos);
+    std::uint16_t port = portOf(line);
+    auto nameNow = [&] {
+        RawClient client(port);
+        REQUIRE(client.startTls());
+        CHECK(client.ask("GET /api/v1/clouds HTTP/1.1\nHost: a").status == 200);
+        return client.peerName();
+    };
+    auto isWithin = [](const std::function<bool()>& condition) {
+        for (int i = 0; i < 200 && !condition(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        return condition();
+    };
+    CHECK(nameNow() == "first");
+    fs::copy_file(other.certificatePath, used.certificatePath, fs::copy_options::overwrite_existing);
+    program.signal(SIGHUP);
+    CHECK(isWithin([&] { return readFile(errors).find("not reloaded") != std::string::npos; }));
+    CHECK(nameNow() == "first");
+    fs::copy_file(other.keyPath, used.keyPath, fs::copy_options::overwrite_existing);
+    program.signal(SIGHUP);
+    CHECK(isWithin([&] { return nameNow() == "second"; }));
+    program.signal(SIGTERM);
+    CHECK(program.wait() == 0);
 }
 
 // UBSan's check of virtual tables opens a pipe to see whether memory can be read, and takes a failure for a

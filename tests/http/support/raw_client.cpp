@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <arpa/inet.h>
 #include <cctype>
+#include <chrono>
 #include <netinet/in.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
 #include <poll.h>
 #include <sstream>
 #include <sys/socket.h>
@@ -26,13 +29,15 @@ RawClient::RawClient(std::uint16_t port, const char* from) {
 }
 
 RawClient::~RawClient() {
+    SSL_free(tls_);
     if (socket_ >= 0)
         ::close(socket_);
 }
 
 bool RawClient::send(std::string_view bytes) {
     while (!bytes.empty()) {
-        ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+        ssize_t sent = tls_ == nullptr ? ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                                       : SSL_write(tls_, bytes.data(), static_cast<int>(bytes.size()));
         if (sent <= 0)
             return false;
         bytes.remove_prefix(static_cast<std::size_t>(sent));
@@ -43,16 +48,57 @@ bool RawClient::send(std::string_view bytes) {
 bool RawClient::fill(int milliseconds) {
     if (socket_ < 0)
         return false; // never connected
-    pollfd waiting{socket_, POLLIN, 0};
-    if (::poll(&waiting, 1, milliseconds) <= 0)
-        return false;
+    if (tls_ == nullptr || SSL_pending(tls_) == 0) {
+        pollfd waiting{socket_, POLLIN, 0};
+        if (::poll(&waiting, 1, milliseconds) <= 0)
+            return false;
+    }
     char bytes[65536];
-    ssize_t got = ::recv(socket_, bytes, sizeof bytes, 0);
+    ERR_clear_error();
+    ssize_t got = tls_ == nullptr ? ::recv(socket_, bytes, sizeof bytes, 0)
+                                  : SSL_read(tls_, bytes, static_cast<int>(sizeof bytes));
+    wasTold_ = tls_ != nullptr && SSL_get_error(tls_, static_cast<int>(got)) == SSL_ERROR_ZERO_RETURN;
     isReset_ = isReset_ || got < 0;
     if (got <= 0)
         return false;
     buffer_.append(bytes, static_cast<std::size_t>(got));
     return true;
+}
+
+bool RawClient::startTls(const std::vector<std::string>& protocols, int newest) {
+    SSL_CTX* context = SSL_CTX_new(TLS_client_method());
+    SSL_CTX_set_security_level(context, 0); // also what a server must refuse
+    SSL_CTX_set_min_proto_version(context, TLS1_VERSION);
+    SSL_CTX_set_max_proto_version(context, newest);
+    std::string offered;
+    for (const std::string& protocol : protocols)
+        offered += static_cast<char>(protocol.size()) + protocol;
+    SSL_CTX_set_alpn_protos(context, reinterpret_cast<const unsigned char*>(offered.data()),
+                            static_cast<unsigned>(offered.size()));
+    tls_ = SSL_new(context);
+    SSL_CTX_free(context); // the session keeps it
+    SSL_set_fd(tls_, socket_);
+    return SSL_connect(tls_) == 1;
+}
+
+std::string RawClient::tlsVersion() const {
+    return SSL_get_version(tls_);
+}
+
+std::string RawClient::tlsProtocol() const {
+    const unsigned char* name = nullptr;
+    unsigned size = 0;
+    SSL_get0_alpn_selected(tls_, &name, &size);
+    return {reinterpret_cast<const char*>(name), size};
+}
+
+std::string RawClient::peerName() const {
+    X509* certificate = SSL_get1_peer_certificate(tls_);
+    char name[256] = "";
+    if (certificate != nullptr)
+        X509_NAME_get_text_by_NID(X509_get_subject_name(certificate), NID_commonName, name, sizeof name);
+    X509_free(certificate);
+    return name;
 }
 
 RawResponse RawClient::receive(bool hasBody) {
@@ -143,6 +189,10 @@ const std::string& RawClient::peek() {
 }
 
 bool RawClient::isClosedWithin(int milliseconds) {
+    if (tls_ != nullptr) {
+        auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(milliseconds);
+        return !fill(milliseconds) && buffer_.empty() && std::chrono::steady_clock::now() < end;
+    }
     pollfd waiting{socket_, POLLIN, 0};
     char byte;
     return buffer_.empty() && ::poll(&waiting, 1, milliseconds) == 1 && ::recv(socket_, &byte, 1, 0) <= 0;

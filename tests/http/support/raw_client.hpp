@@ -7,6 +7,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+struct ssl_st; // OpenSSL's SSL
 
 namespace stipple::test {
 
@@ -32,6 +35,15 @@ class RawClient {
     RawClient(const RawClient&) = delete;
     RawClient& operator=(const RawClient&) = delete;
 
+    // Speaks TLS from here on, as an https client does; any certificate will do. False if that fails.
+    // `protocols`: offered by ALPN; `newest`: the latest version of TLS that is spoken, 0x0304 for 1.3.
+    bool startTls(const std::vector<std::string>& protocols = {"http/1.1"}, int newest = 0x0304);
+    std::string tlsVersion() const;
+    std::string tlsProtocol() const; // that ALPN chose
+    std::string peerName() const;    // common name in the server's certificate
+    // After the end of the connection: the server had said that this is the end (close_notify).
+    bool wasTold() const { return wasTold_; }
+
     bool isConnected() const { return socket_ >= 0; }
     bool send(std::string_view bytes);
     // The next answer; status 0 if the connection ends first. `hasBody` false: the answer to a HEAD.
@@ -50,7 +62,8 @@ class RawClient {
     void receiveUntilClose(RawResponse& response);
     bool fill(int milliseconds = 10'000); // reads more into buffer_; false at the end
     int socket_ = -1;
-    bool isReset_ = false;
+    ssl_st* tls_ = nullptr;
+    bool isReset_ = false, wasTold_ = false;
     std::string buffer_;
 };
 

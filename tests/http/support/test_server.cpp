@@ -113,7 +113,15 @@ server::ServerLimits TestServer::quickLimits() {
 }
 
 TestServer::TestServer(server::ServerLimits limits, const Prepare& prepare) {
-    server::SiteOptions siteOptions = prepare ? prepare(folder_) : server::SiteOptions();
+    start(limits, prepare ? prepare(folder_) : server::SiteOptions());
+}
+
+TestServer::TestServer(Https, server::ServerLimits limits)
+    : certificate_(makeCertificate(folder_.path(), "first")) {
+    start(limits, {});
+}
+
+void TestServer::start(server::ServerLimits limits, server::SiteOptions siteOptions) {
     auto catalog = need(server::CloudCatalog::open({folder_.clouds().string()}));
     auto page = need(server::openPageFolder(folder_.page().string()));
     auto site = std::make_shared<const server::Site>(std::move(catalog.catalog),
@@ -121,6 +129,8 @@ TestServer::TestServer(server::ServerLimits limits, const Prepare& prepare) {
     server::ServerOptions options;
     options.limits = limits;
     options.threads = 2;
+    options.certificatePath = certificate_.certificatePath;
+    options.keyPath = certificate_.keyPath;
     server_ = need(server::Server::start(options, site, [this](const server::RequestRecord& record) {
         std::lock_guard lock(mutex_);
         records_.push_back(record);

@@ -5,6 +5,7 @@
 
 #include "server/net/server.hpp"
 #include "server/site/site.hpp"
+#include "tests/http/support/test_certificate.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -46,6 +47,10 @@ class TestServer {
     // `prepare` may add to the folder, of which all of clouds/ is served.
     using Prepare = std::function<server::SiteOptions(TestFolder& folder)>;
     explicit TestServer(server::ServerLimits limits = quickLimits(), const Prepare& prepare = {});
+    // An https server; certificates that are made in its folder are found by reload.
+    struct Https {};
+    explicit TestServer(Https, server::ServerLimits limits = quickLimits());
+    const TestCertificate& certificate() const { return certificate_; }
     static server::ServerLimits quickLimits(); // as in service, but looked at every 20 ms
 
     std::uint16_t port() const { return server_->port(); }
@@ -58,7 +63,10 @@ class TestServer {
     void end() { server_.reset(); } // as if the program had been killed
 
   private:
+    void start(server::ServerLimits limits, server::SiteOptions siteOptions);
+
     TestFolder folder_;
+    TestCertificate certificate_; // empty: http
     mutable std::mutex mutex_;
     std::vector<server::RequestRecord> records_;
     std::unique_ptr<server::Server> server_;

@@ -1,0 +1,53 @@
+#include "server/verbs/net_options.hpp"
+
+#include <chrono>
+#include <string>
+
+namespace stipple::server {
+
+namespace {
+
+using Milliseconds = std::chrono::milliseconds;
+
+CLI::Option* addSeconds(CLI::App& verb, const std::string& name, Milliseconds& limit,
+                        const std::string& help) {
+    auto set = [&limit](double seconds) { limit = Milliseconds(static_cast<std::int64_t>(seconds * 1000)); };
+    return verb.add_option_function<double>(name, set, help)
+        ->check(CLI::Range(0.001, 86400.0))
+        ->default_str(std::to_string(limit.count() / 1000));
+}
+
+template <class Number>
+CLI::Option* addCount(CLI::App& verb, const std::string& name, Number& limit, int least,
+                      const std::string& help) {
+    return verb.add_option(name, limit, help)->check(CLI::Range(least, 10'000'000))->capture_default_str();
+}
+
+void addLimitOptions(CLI::App& verb, ServerLimits& limits) {
+    for (CLI::Option* option :
+         {addCount(verb, "--jobs", limits.jobs.working, 0,
+                   "Jobs (exports, pictures) that compute at once; 0: one for each core, 2 to 8"),
+          addCount(verb, "--jobs-per-client", limits.jobs.perClient, 1,
+                   "Jobs of one client, waiting or running; more are refused (429)"),
+          addCount(verb, "--job-queue", limits.jobs.queued, 1, "Jobs that may wait; more are refused (503)"),
+          addSeconds(verb, "--job-seconds", limits.jobs.work, "Seconds that a job may compute")})
+        option->group("Limits");
+}
+
+} // namespace
+
+void addNetOptions(CLI::App& verb, ServerOptions& options) {
+    options.port = 8017;
+    verb.add_option("--host", options.host,
+                    "Address to listen on; 0.0.0.0 lets other machines in (see --cert)")
+        ->capture_default_str();
+    verb.add_option("--port", options.port, "Port to listen on; 0: any free one")->capture_default_str();
+    CLI::Option* certificate = verb.add_option(
+        "--cert", options.certificatePath, "Serve https: PEM file of the certificate and those it rests on");
+    CLI::Option* key = verb.add_option("--key", options.keyPath, "PEM file of the certificate's private key");
+    certificate->needs(key);
+    key->needs(certificate);
+    addLimitOptions(verb, options.limits);
+}
+
+} // namespace stipple::server
