@@ -111,8 +111,8 @@ int intensityBlock(const CloudMetadata& metadata) {
         return -1;
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (std::find(blocks[i].attributes.begin(), blocks[i].attributes.end(), wanted) !=
-            blocks[i].attributes.end())
+        if (!blocks[i].isExactColour && std::find(blocks[i].attributes.begin(), blocks[i].attributes.end(),
+                                                  wanted) != blocks[i].attributes.end())
             return static_cast<int>(i);
     return -1;
 }

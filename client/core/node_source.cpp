@@ -54,6 +54,7 @@ class StippleNodeSource final : public NodeSource {
                 return OpenStep(needed);
         }
         STIPPLE_TRY(metadata, parseMetadata(*fetched.find(header.metadata)));
+        STIPPLE_CHECK(checkVersion(header, metadata));
         OpenedCloud cloud;
         cloud.fileBytes = header.fileBytes;
         cloud.metadata = std::make_shared<const CloudMetadata>(std::move(metadata));

@@ -48,7 +48,7 @@ std::vector<PartSummary> nameParts(const CloudMetadata& metadata) {
         std::string name;
         for (int a : block.attributes)
             name += (name.empty() ? "" : ", ") + metadata.schema.attributes[static_cast<std::size_t>(a)].name;
-        parts.push_back({name, 0});
+        parts.push_back({block.isExactColour ? "exact colour of inner nodes" : name, 0});
     }
     return parts;
 }

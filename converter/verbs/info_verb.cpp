@@ -94,6 +94,8 @@ void printAsText(const std::string& file, const CloudSummary& summary) {
     fmt::print("root cube: 2^{} steps wide; spacing of the root {:.6g}, sampled {}; hash {}\n",
                metadata.rootCube.bits, metadata.spacing,
                samplingNames[static_cast<std::size_t>(metadata.sampling)], metadata.pointHash);
+    fmt::print("picture: {}{}\n", cli::colourName(metadata.pictureColour),
+               metadata.innerColour == InnerColour::mean ? ", mean colours in inner nodes" : "");
     fmt::print("made by {} ({})\n", metadata.tool, metadata.options);
     for (const SourceFile& source : metadata.sources)
         fmt::print("source: {} ({}, {} points)\n", source.name, source.format, source.pointCount);

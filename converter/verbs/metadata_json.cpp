@@ -17,10 +17,11 @@ Json statisticsJson(const AttributeStatistics& statistics) {
     return json;
 }
 
+} // namespace
+
 const char* colourName(PictureColour colour) {
     return colour == PictureColour::rgb ? "rgb" : colour == PictureColour::intensity ? "intensity" : "none";
 }
-} // namespace
 
 Json vectorJson(const Vec3d& v) {
     return Json::array({v.x, v.y, v.z});
@@ -83,6 +84,7 @@ Json metadataJson(const CloudMetadata& metadata) {
     json["spacing"] = metadata.spacing;
     json["sampling"] = samplingNames[static_cast<std::size_t>(metadata.sampling)];
     json["pictureColour"] = colourName(metadata.pictureColour);
+    json["innerColour"] = innerColourNames[static_cast<std::size_t>(metadata.innerColour)];
     json["colourIs8Bit"] = metadata.colourIs8Bit;
     json["attributes"] = Json::array();
     for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a) {

@@ -9,6 +9,7 @@ namespace stipple::cli {
 
 using Json = nlohmann::ordered_json; // people read it: keys stay in the order they are written
 
+const char* colourName(PictureColour colour); // as in the file
 Json vectorJson(const Vec3d& v);
 Json boxJson(const BoxD& box); // null for an empty box
 Json gridJson(const Grid& grid);

@@ -1,8 +1,8 @@
 #include "shared/codec/colour_codec.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/codec/colour_planes.hpp"
 #include "shared/codec/progressive_order.hpp"
-#include "shared/codec/section.hpp"
 
 #include <algorithm>
 
@@ -11,17 +11,6 @@ namespace stipple {
 namespace {
 
 enum class Coding : std::uint8_t { predicted = 0, plain = 1 };
-
-// Channels are coded green first; red and blue as what their residual differs from green's.
-constexpr std::size_t channelOrder[3] = {1, 0, 2};
-
-std::uint32_t unitOf(ColourWidth width) {
-    return width == ColourWidth::high ? 256 : width == ColourWidth::repeated ? 257 : 1;
-}
-// A value of that width divided by its unit is the value shifted so far.
-int shiftOf(ColourWidth width) {
-    return width == ColourWidth::high || width == ColourWidth::repeated ? 8 : 0;
-}
 
 // Predictions for the points of a stratum > 0 from the values of the earlier ones, `known`.
 template <class T>
@@ -36,16 +25,6 @@ void predictBetween(std::span<const T> known, NeighbourChoices choices, std::spa
         to[j] = predicted(j, known[j], known[j + 1]);
     if (pairs < to.size()) // the last point may have no upper neighbour
         to[pairs] = known[pairs];
-}
-
-template <class T>
-void writePlane(ByteWriter& to, std::span<const T> values) {
-    Bytes part(values.size());
-    for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
-        for (std::size_t j = 0; j < part.size(); ++j)
-            part[j] = static_cast<std::uint8_t>(values[j] >> (8 * byte));
-        writeSection(to, part, Effort::literals);
-    }
 }
 
 // The stratum's values of one channel, and the earlier strata's, in Morton order.
@@ -158,6 +137,14 @@ ColourWidth narrowestWidth(std::span<const std::uint16_t> values) {
            : high     ? ColourWidth::high
            : repeated ? ColourWidth::repeated
                       : ColourWidth::wide;
+}
+
+void roundTo(ColourWidth width, std::span<std::uint16_t> values) {
+    if (width == ColourWidth::wide)
+        return;
+    std::uint32_t unit = unitOf(width);
+    for (std::uint16_t& value : values)
+        value = static_cast<std::uint16_t>(std::min<std::uint32_t>((value + unit / 2) / unit, 255) * unit);
 }
 
 // [u8 width, in stratum 0] [u8 coding] [per channel: section of the residuals' low bytes, and one of their

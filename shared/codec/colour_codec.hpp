@@ -23,6 +23,8 @@ enum class ColourWidth : std::uint8_t {
 };
 
 ColourWidth narrowestWidth(std::span<const std::uint16_t> values);
+// To the nearest values that are stored in `width`.
+void roundTo(ColourWidth width, std::span<std::uint16_t> values);
 
 // Writes one stratum. `values` are those of all the node's points in Morton order, `channels` (1 or 3)
 // interleaved; `choices` those of the stratum (ignored for stratum 0).

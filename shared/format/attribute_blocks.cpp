@@ -63,6 +63,8 @@ std::vector<AttributeBlock> attributeBlocks(const CloudMetadata& metadata) {
     std::array<int, families.size()> blockOfFamily;
     blockOfFamily.fill(-1);
     std::vector<AttributeBlock> blocks;
+    if (metadata.innerColour != InnerColour::exact && !taken.empty())
+        blocks.push_back({taken, true});
     for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a) {
         if (std::find(taken.begin(), taken.end(), static_cast<int>(a)) != taken.end())
             continue;
@@ -74,7 +76,7 @@ std::vector<AttributeBlock> attributeBlocks(const CloudMetadata& metadata) {
         }
         if (family >= 0)
             blockOfFamily[static_cast<std::size_t>(family)] = static_cast<int>(blocks.size());
-        blocks.push_back({{static_cast<int>(a)}});
+        blocks.push_back({{static_cast<int>(a)}, false});
     }
     return blocks;
 }

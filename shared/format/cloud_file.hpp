@@ -24,11 +24,14 @@ struct FileHeader {
     std::uint64_t fileBytes = 0; // of the complete file
     ByteRange metadata;
     ByteRange rootChunk;
+    std::uint32_t version = 1; // of the format
 };
 inline constexpr std::size_t fileHeaderBytes = 64;
 
 Result<FileHeader> parseFileHeader(ByteSpan bytes);  // at least fileHeaderBytes
 Result<CloudMetadata> parseMetadata(ByteSpan block); // exactly FileHeader::metadata
+// Metadata that speak of what the header's version does not have are corrupt.
+Status checkVersion(const FileHeader& header, const CloudMetadata& metadata);
 // The nodes of a hierarchy chunk, breadth first. Every entry's ranges lie inside `fileBytes`.
 Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata, std::uint64_t fileBytes,
                                                    ByteSpan block);
@@ -59,6 +62,11 @@ Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry
 // one column of raw little-endian values per attribute of the block, in progressive order.
 Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
                                             std::size_t block, ByteSpan bytes);
+
+// Replaces the colours of a node's picture, all strata of it, by the exact ones, from the bytes of the block
+// that has them (AttributeBlock::isExactColour; block 0). No bytes: the picture's are exact.
+Status decodeExactColour(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
+                         NodePicture& picture);
 
 // The bytes of a node that some of its attributes need: the strata (positions and the colour of the picture,
 // which travel with them) and the further blocks that hold the attributes asked for.

@@ -51,6 +51,11 @@ struct AttributeStatistics {
 // The colour that travels with positions in a node's strata.
 enum class PictureColour : std::uint8_t { none, rgb, intensity };
 
+// What the picture of an inner node shows: its points' own colours, or the mean colour of the area that each
+// stands for (converter/build/mean_colour.hpp). Then the exact ones are in a block of their own.
+enum class InnerColour : std::uint8_t { exact, mean };
+inline constexpr std::array<const char*, 2> innerColourNames{"exact", "mean"};
+
 // How the points of inner nodes were chosen among those below (converter/build/chooser.hpp). Only `poisson`
 // keeps a minimum distance between the points of a node.
 enum class Sampling : std::uint8_t { poisson, random, grid };
@@ -78,6 +83,7 @@ struct CloudMetadata {
     Schema schema;
     std::vector<AttributeStatistics> statistics; // parallel to schema.attributes
     PictureColour pictureColour = PictureColour::none;
+    InnerColour innerColour = InnerColour::exact;
     bool colourIs8Bit = false; // Red, Green, Blue are 16-bit fields that hold 0..255
     // Order-independent sum over all points' integers and attributes (shared/format/point_hash.hpp), hex.
     std::string pointHash;

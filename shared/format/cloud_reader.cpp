@@ -40,6 +40,8 @@ class Reader final : public CloudReader {
         auto metadata = parseMetadata(block);
         if (!metadata)
             return metadata.error().at(source_.name());
+        if (Status version = checkVersion(header_, *metadata); !version)
+            return version.error().at(source_.name());
         metadata_ = std::move(*metadata);
         return {};
     }
@@ -185,10 +187,13 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
     for (const auto& p : picture.positions)
         points.positions.push_back(corner + Vec3i{p.x, p.y, p.z});
     points.columns.resize(node.attributes.size());
-    takeColour(metadata, node, picture, points);
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     for (std::size_t block : blocksHolding(metadata, node.attributes)) {
         std::uint64_t size = block < entry.attributeBytes.size() ? entry.attributeBytes[block] : 0;
+        if (blocks[block].isExactColour) {
+            STIPPLE_CHECK(decodeExactColour(metadata, entry, next(size), picture));
+            continue;
+        }
         STIPPLE_TRY(columns, decodeAttributes(metadata, entry, block, next(size)));
         for (std::size_t i = 0; i < columns.size(); ++i) {
             std::vector<std::size_t> places = placesOf(node.attributes, blocks[block].attributes[i]);
@@ -196,6 +201,7 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
                 points.columns[places[p]] = p + 1 < places.size() ? columns[i] : std::move(columns[i]);
         }
     }
+    takeColour(metadata, node, picture, points);
     return points;
 }
 

@@ -165,6 +165,7 @@ Result<WrittenCloud> assembleCloud(const std::string& path, const CloudMetadata&
     if (metadataBlock.size() > maxMetadataBytes)
         return Error{ErrorCode::limitExceeded, "the metadata are over 64 MB", path, {}};
     FileHeader header;
+    header.version = versionFor(metadata);
     header.metadata = {fileHeaderBytes, metadataBlock.size()};
     header.rootChunk = {header.metadata.end(), 0};
     std::vector<Bytes> chunkBlocks = placeChunks(header, plans, chunks);

@@ -10,6 +10,7 @@
 #include "shared/points/point_batch.hpp"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -26,14 +27,20 @@ struct EncodedNode {
 // A further block of a node: one attribute, or a few that are always wanted together.
 struct AttributeBlock {
     std::vector<int> attributes; // indices into metadata.schema.attributes
+    // The exact colours, of which the picture shows others: decoded by decodeExactColour, not as attributes.
+    bool isExactColour = false;
 };
-// The blocks of every node of a cloud, in file order: all attributes that are not part of the picture.
+// The blocks of every node of a cloud, in file order: the exact colours, if pictures may show others, and all
+// attributes that are not part of the picture.
 std::vector<AttributeBlock> attributeBlocks(const CloudMetadata& metadata);
 
 // Encodes the points of one node, given in grid integers in any order (which is not kept: points are stored
-// in progressive order; the same multiset gives the same bytes). Errors: outOfRange if a point lies
-// outside the node; invalidArgument if the node is wider than 2^31 steps.
-Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const PointBatch& points);
+// in progressive order; the same multiset gives the same bytes). `shown`, for clouds whose inner nodes show
+// mean colours: what the picture is to show of each point, in the channels of the picture, interleaved;
+// empty: their own colours. It is rounded to the precision of those, and to 8 bits where they have 16.
+// Errors: outOfRange if a point lies outside the node; invalidArgument if the node is wider than 2^31 steps.
+Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const PointBatch& points,
+                               std::span<const std::uint16_t> shown = {});
 
 struct WrittenCloud {
     std::uint64_t fileBytes = 0, pictureBytes = 0, attributeBytes = 0, hierarchyBytes = 0, metadataBytes = 0;

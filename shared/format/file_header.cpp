@@ -20,7 +20,7 @@ Error inHeader(ErrorCode code, std::string what, std::size_t byte, std::string a
 Bytes writeFileHeader(const FileHeader& header) {
     ByteWriter to;
     to.writeBytes(magic);
-    to.write(formatVersion);
+    to.write(header.version);
     to.write(static_cast<std::uint32_t>(fileHeaderBytes));
     to.write(header.fileBytes);
     to.write(header.metadata.offset);
@@ -44,17 +44,18 @@ Result<FileHeader> parseFileHeader(ByteSpan bytes) {
     ByteReader from(bytes.first(fileHeaderBytes));
     from.skip(magic.size());
     auto version = from.read<std::uint32_t>();
-    if (version != formatVersion)
-        return inHeader(
-            ErrorCode::unsupported,
-            cat("the file has format version ", version, "; this program reads version ", formatVersion), 8,
-            "use a newer program, or convert the scan again");
+    if (version < 1 || version > latestVersion)
+        return inHeader(ErrorCode::unsupported,
+                        cat("the file has format version ", version, "; this program reads versions 1 to ",
+                            latestVersion),
+                        8, "use a newer program, or convert the scan again");
     if (blockChecksum(bytes.first(checksumOffset)) != loadLe<std::uint32_t>(bytes.data() + checksumOffset))
         return inHeader(ErrorCode::corrupt, "the checksum does not match the header", checksumOffset,
                         "the file was altered or damaged; copy or convert it again");
     if (auto size = from.read<std::uint32_t>(); size != fileHeaderBytes)
         return inHeader(ErrorCode::corrupt, cat("a header of ", size, " bytes"), 12);
     FileHeader header;
+    header.version = version;
     header.fileBytes = from.read<std::uint64_t>();
     header.metadata = {from.read<std::uint64_t>(), 0};
     header.metadata.size = from.read<std::uint64_t>();
@@ -69,6 +70,14 @@ Result<FileHeader> parseFileHeader(ByteSpan bytes) {
     if (!inside(header.rootChunk) || header.rootChunk.size > maxChunkBytes)
         return inHeader(ErrorCode::corrupt, "the root hierarchy chunk lies outside the file", 40);
     return header;
+}
+
+Status checkVersion(const FileHeader& header, const CloudMetadata& metadata) {
+    if (std::uint32_t needed = versionFor(metadata); header.version < needed)
+        return inHeader(ErrorCode::corrupt,
+                        cat("format version ", header.version, ", but the metadata are of version ", needed),
+                        8);
+    return {};
 }
 
 } // namespace stipple

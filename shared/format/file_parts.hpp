@@ -5,7 +5,12 @@
 
 namespace stipple {
 
-inline constexpr std::uint32_t formatVersion = 1;
+// 2: inner nodes may show mean colours.
+inline constexpr std::uint32_t latestVersion = 2;
+// The lowest version that has what the cloud uses.
+inline std::uint32_t versionFor(const CloudMetadata& metadata) {
+    return metadata.innerColour == InnerColour::exact ? 1 : 2;
+}
 // Limits a reader checks before it asks for a block or makes room for what it says.
 inline constexpr std::uint64_t maxMetadataBytes = 64 * 1024 * 1024;
 inline constexpr std::uint64_t maxChunkBytes = 16 * 1024 * 1024;

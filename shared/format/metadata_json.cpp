@@ -259,6 +259,8 @@ void checkWhole(const CloudMetadata& metadata, Fields& fields) {
             fields.refuse(cat("attributes[", a, "].name"), "unique");
     if (!checkPictureAttributes(metadata))
         fields.refuse("pictureColour", "a colour that the attributes hold");
+    if (metadata.innerColour != InnerColour::exact && metadata.pictureColour == PictureColour::none)
+        fields.refuse("innerColour", "exact, although there is no colour");
 }
 
 } // namespace
@@ -290,6 +292,8 @@ Bytes writeMetadata(const CloudMetadata& metadata) {
     if (!metadata.bounds.empty())
         json["bounds"] = {{"min", vecJson(metadata.bounds.min)}, {"max", vecJson(metadata.bounds.max)}};
     json["pictureColour"] = colourNames[static_cast<std::size_t>(metadata.pictureColour)];
+    if (metadata.innerColour != InnerColour::exact)
+        json["innerColour"] = innerColourNames[static_cast<std::size_t>(metadata.innerColour)];
     json["colourIs8Bit"] = metadata.colourIs8Bit;
     json["attributes"] = Json::array();
     for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a)
@@ -333,6 +337,8 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
         metadata.bounds.max = bounds.integers("max");
     }
     metadata.pictureColour = static_cast<PictureColour>(fields.choice("pictureColour", colourNames));
+    if (fields.find("innerColour") != nullptr)
+        metadata.innerColour = static_cast<InnerColour>(fields.choice("innerColour", innerColourNames));
     metadata.colourIs8Bit = fields.flag("colourIs8Bit");
     const Json& attributes = fields.list("attributes");
     if (attributes.size() > maxAttributes)

@@ -1,6 +1,7 @@
 #include "shared/base/text.hpp"
 #include "shared/codec/colour_codec.hpp"
 #include "shared/codec/column_codec.hpp"
+#include "shared/codec/exact_colour.hpp"
 #include "shared/codec/position_codec.hpp"
 #include "shared/codec/progressive_order.hpp"
 #include "shared/format/block_frame.hpp"
@@ -123,6 +124,8 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     if (block >= blocks.size() || entry.attributeBytes.size() != blocks.size())
         return Error{ErrorCode::invalidArgument, "the cloud has no such block", {}, {}};
+    if (blocks[block].isExactColour)
+        return Error{ErrorCode::invalidArgument, "exact colours are no attributes of their own", {}, {}};
     STIPPLE_CHECK(checkSize(bytes, entry.attributeRange(block).size));
     STIPPLE_CHECK(checkEntry(metadata, entry));
     std::vector<Bytes> columns;
@@ -152,6 +155,27 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
     return columns;
 }
 
+Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
+                        NodePicture& picture) {
+    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
+    std::size_t channels = pictureAttributes(metadata).size();
+    if (blocks.empty() || !blocks[0].isExactColour || entry.attributeBytes.size() != blocks.size() ||
+        picture.size() != entry.pointCount || picture.colour.size() != channels * picture.size())
+        return Error{
+            ErrorCode::invalidArgument, "there is no block of exact colours to this picture", {}, {}};
+    ByteRange range = entry.attributeRange(0);
+    STIPPLE_CHECK(checkSize(bytes, range.size));
+    if (bytes.empty())
+        return {};
+    STIPPLE_TRY(payload, unframeBlock(bytes, "exact colours", range.offset));
+    ByteReader reader(payload);
+    Status decoded = readExactColour(reader, progressiveOrder(entry.pointCount), static_cast<int>(channels),
+                                     picture.colour);
+    if (decoded && reader.remaining() > 0)
+        decoded = corrupt("bytes are left over");
+    return decoded ? decoded : Status(decoded.error().at(cat("exact colours, byte ", range.offset)));
+}
+
 } // namespace
 
 Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
@@ -170,6 +194,12 @@ Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const
     if (!columns)
         return columns.error().at("node " + entry.key.text());
     return columns;
+}
+
+Status decodeExactColour(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
+                         NodePicture& picture) {
+    Status decoded = decodeExactBlock(metadata, entry, bytes, picture);
+    return decoded ? decoded : Status(decoded.error().at("node " + entry.key.text()));
 }
 
 } // namespace stipple

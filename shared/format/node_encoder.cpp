@@ -1,6 +1,7 @@
 #include "shared/base/text.hpp"
 #include "shared/codec/colour_codec.hpp"
 #include "shared/codec/column_codec.hpp"
+#include "shared/codec/exact_colour.hpp"
 #include "shared/codec/position_codec.hpp"
 #include "shared/codec/progressive_order.hpp"
 #include "shared/format/block_frame.hpp"
@@ -13,7 +14,8 @@ namespace stipple {
 
 namespace {
 
-Status checkShape(const CloudMetadata& metadata, NodeKey key, const PointBatch& points) {
+Status checkShape(const CloudMetadata& metadata, NodeKey key, const PointBatch& points,
+                  std::span<const std::uint16_t> shown) {
     const auto& attributes = metadata.schema.attributes;
     if (key.level > maxLevel || key.level > metadata.rootCube.bits ||
         metadata.rootCube.nodeBits(key.level) > maxNodeBits)
@@ -26,6 +28,10 @@ Status checkShape(const CloudMetadata& metadata, NodeKey key, const PointBatch& 
         fits = points.columns[a].size() == points.size() * attributes[a].size();
     if (!fits)
         return Error{ErrorCode::invalidArgument, "the points do not have the cloud's attributes", {}, {}};
+    std::size_t channels =
+        metadata.innerColour == InnerColour::exact ? 0 : pictureAttributes(metadata).size();
+    if (!shown.empty() && shown.size() != channels * points.size())
+        return Error{ErrorCode::invalidArgument, "what the picture is to show does not fit it", {}, {}};
     return {};
 }
 
@@ -48,9 +54,11 @@ Result<std::vector<Vec3<std::uint32_t>>> inNode(const CloudMetadata& metadata, N
     return local;
 }
 
-// Points at the same place follow in the order of their attributes' bytes, so that the input's order
-// leaves no trace.
-void orderEqualPoints(const CloudMetadata& metadata, const PointBatch& points, SortedPoints& sorted) {
+// Points at the same place follow in the order of their attributes' bytes, then of what is shown of them, so
+// that the input's order leaves no trace.
+void orderEqualPoints(const CloudMetadata& metadata, const PointBatch& points,
+                      std::span<const std::uint16_t> shown, SortedPoints& sorted) {
+    const std::size_t channels = points.size() > 0 ? shown.size() / points.size() : 0;
     auto before = [&](std::uint32_t a, std::uint32_t b) {
         for (std::size_t c = 0; c < points.columns.size(); ++c) {
             std::size_t size = metadata.schema.attributes[c].size();
@@ -58,7 +66,9 @@ void orderEqualPoints(const CloudMetadata& metadata, const PointBatch& points, S
             if (int order = std::memcmp(column + a * size, column + b * size, size); order != 0)
                 return order < 0;
         }
-        return false;
+        std::span<const std::uint16_t> ofA = shown.subspan(a * channels, channels),
+                                       ofB = shown.subspan(b * channels, channels);
+        return std::lexicographical_compare(ofA.begin(), ofA.end(), ofB.begin(), ofB.end());
     };
     auto same = [&](std::size_t a, std::size_t b) {
         return sorted.keys[a] == sorted.keys[b] && (sorted.lows.empty() || sorted.lows[a] == sorted.lows[b]);
@@ -113,6 +123,30 @@ bool repeatsOneValue(ByteSpan column, std::size_t size) {
            std::memcmp(column.data(), column.data() + size, column.size() - size) == 0;
 }
 
+// In Morton order what the picture shows, if that is not the points' own colour, in the precision of that; 8
+// bits of 16 are enough to look at.
+std::vector<std::uint16_t> sortedShown(std::span<const std::uint16_t> shown, std::size_t channels,
+                                       ColourWidth own, const SortedPoints& sorted) {
+    std::vector<std::uint16_t> values(shown.size());
+    if (shown.empty())
+        return values;
+    for (std::size_t i = 0; i < sorted.input.size(); ++i)
+        for (std::size_t c = 0; c < channels; ++c)
+            values[i * channels + c] = shown[sorted.input[i] * channels + c];
+    roundTo(own == ColourWidth::wide && channels == 3 ? ColourWidth::repeated : own, values);
+    return values;
+}
+
+// No bytes if the picture shows them.
+Bytes exactColourBlock(std::span<const std::uint16_t> exact, std::span<const std::uint16_t> shown,
+                       std::size_t channels) {
+    if (shown.empty() || std::equal(exact.begin(), exact.end(), shown.begin()))
+        return {};
+    ByteWriter payload;
+    writeExactColour(payload, exact, shown, static_cast<int>(channels));
+    return framePaddedBlock(payload.bytes());
+}
+
 Bytes attributeBlock(const CloudMetadata& metadata, const AttributeBlock& block, const PointBatch& points,
                      const SortedPoints& sorted) {
     ByteWriter payload;
@@ -132,22 +166,26 @@ Bytes attributeBlock(const CloudMetadata& metadata, const AttributeBlock& block,
 
 } // namespace
 
-Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const PointBatch& points) {
+Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const PointBatch& points,
+                               std::span<const std::uint16_t> shown) {
     auto placed = [&](const Error& error) { return error.at("node " + key.text()); };
-    if (Status shape = checkShape(metadata, key, points); !shape)
+    if (Status shape = checkShape(metadata, key, points, shown); !shape)
         return placed(shape.error());
     auto local = inNode(metadata, key, points);
     if (!local)
         return placed(local.error());
 
     SortedPoints sorted = sortPoints(*local);
-    orderEqualPoints(metadata, points, sorted);
+    orderEqualPoints(metadata, points, shown, sorted);
 
     EncodedNode node;
     node.key = key;
     node.pointCount = static_cast<std::uint32_t>(points.size());
     std::vector<int> colourAttributes = pictureAttributes(metadata);
-    std::vector<std::uint16_t> colour = sortedColour(colourAttributes, points, sorted);
+    const std::size_t channels = colourAttributes.size();
+    std::vector<std::uint16_t> exact = sortedColour(colourAttributes, points, sorted);
+    std::vector<std::uint16_t> rounded = sortedShown(shown, channels, narrowestWidth(exact), sorted);
+    const std::vector<std::uint16_t>& colour = shown.empty() ? exact : rounded;
     ColourWidth width = narrowestWidth(colour);
     std::size_t sizeBytes = 0;
     for (int stratum = 0; stratum < strataCount; ++stratum) {
@@ -156,8 +194,8 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
             continue;
         ByteWriter payload;
         encodePositions(payload, sorted, stratum);
-        if (!colourAttributes.empty())
-            encodeColour(payload, colour, static_cast<int>(colourAttributes.size()), width, stratum,
+        if (channels > 0)
+            encodeColour(payload, colour, static_cast<int>(channels), width, stratum,
                          neighbourChoices(sorted.keys, stratum));
         std::size_t least = (count + maxPointsPerByte - 1) / maxPointsPerByte;
         if (payload.size() + blockFrameBytes < least)
@@ -166,7 +204,8 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
         sizeBytes = std::max(sizeBytes, payload.size());
     }
     for (const AttributeBlock& block : attributeBlocks(metadata)) {
-        node.attributes.push_back(attributeBlock(metadata, block, points, sorted));
+        node.attributes.push_back(block.isExactColour ? exactColourBlock(exact, rounded, channels)
+                                                      : attributeBlock(metadata, block, points, sorted));
         sizeBytes = std::max(sizeBytes, node.attributes.back().size());
     }
     if (sizeBytes > UINT32_MAX - blockFrameBytes - paddedTo)

@@ -32,7 +32,7 @@ Bytes readFile(const std::string& path) {
     return *bytes;
 }
 
-// Two levels: the root with every 8th point, its children with the rest.
+// Two levels: the root with every 8th point, whose picture shows other colours, its children with the rest.
 Bytes makeCloudFile() {
     CloudMetadata metadata;
     metadata.name = "damage";
@@ -41,6 +41,7 @@ Bytes makeCloudFile() {
     metadata.schema = las::schemaOf(7);
     metadata.statistics.resize(metadata.schema.attributes.size());
     metadata.pictureColour = PictureColour::rgb;
+    metadata.innerColour = InnerColour::mean;
     PointBatch points = test::samplePoints(metadata.schema, 4000, rootBits, 7);
     metadata.pointCount = points.size();
 
@@ -66,7 +67,11 @@ Bytes makeCloudFile() {
                             size);
             }
         }
-        auto encoded = encodeNode(metadata, key, node);
+        std::vector<std::uint16_t> shown;
+        int red = metadata.schema.find(attribute_names::red);
+        for (std::size_t i = 0; key.level == 0 && i < 3 * node.size(); ++i)
+            shown.push_back(node.value<std::uint16_t>(red + static_cast<int>(i % 3), i / 3) / 2);
+        auto encoded = encodeNode(metadata, key, node, shown);
         REQUIRE(encoded.ok());
         REQUIRE((*writer)->add(*encoded).ok());
     }

@@ -2,6 +2,7 @@
 
 #include "shared/format/cloud_file.hpp"
 #include "shared/format/cloud_writer.hpp"
+#include "shared/format/picture_attributes.hpp"
 #include "shared/io/memory_source.hpp"
 
 #include <catch2/catch.hpp>
@@ -23,6 +24,7 @@ CloudMetadata metadataOf(const SmallCloudOptions& options) {
     metadata.rootCube = options.rootCube;
     metadata.spacing = 1;
     metadata.pictureColour = options.colour;
+    metadata.innerColour = options.innerColour;
     auto add = [&](std::string_view name) {
         Attribute attribute;
         attribute.name = std::string(name);
@@ -64,6 +66,14 @@ PointBatch pointsOf(const CloudMetadata& metadata, const NodeKey& key, std::uint
     return points;
 }
 
+// As many colours as the points have, others than theirs.
+std::vector<std::uint16_t> shownOf(const PointBatch& points, std::size_t channels, std::mt19937_64& random) {
+    std::vector<std::uint16_t> shown(channels * points.size());
+    for (std::uint16_t& value : shown)
+        value = static_cast<std::uint16_t>(random());
+    return shown;
+}
+
 template <class T>
 T need(Result<T> result) {
     if (!result.ok())
@@ -88,8 +98,12 @@ SmallCloud makeSmallCloud(const SmallCloudOptions& options) {
         for (const Vec3i& p : points.positions)
             cloud.metadata.bounds.extend(p);
         cloud.metadata.pointCount += points.size();
+        bool isInner = key.level + 1 < options.levels;
+        std::vector<std::uint16_t> shown;
+        if (isInner && options.innerColour == InnerColour::mean)
+            shown = shownOf(points, pictureAttributes(cloud.metadata).size(), random);
         if (points.size() > 0)
-            REQUIRE(writer->add(need(encodeNode(cloud.metadata, key, points))).ok());
+            REQUIRE(writer->add(need(encodeNode(cloud.metadata, key, points, shown))).ok());
     }
     need(writer->finish(cloud.metadata));
     std::ifstream in(path, std::ios::binary);

@@ -16,6 +16,8 @@ struct SmallCloudOptions {
     Grid grid{};
     RootCube rootCube{{0, 0, 0}, 17};
     PictureColour colour = PictureColour::rgb;
+    // mean: nodes with children show colours that are not their points'.
+    InnerColour innerColour = InnerColour::exact;
     bool withIntensity = true;
     std::uint32_t seed = 1;
 };

@@ -1,5 +1,6 @@
 #include "client/core/node_decoder.hpp"
 
+#include "shared/format/cloud_file.hpp"
 #include "tests/support/small_cloud.hpp"
 
 #include <catch2/catch.hpp>
@@ -65,6 +66,25 @@ TEST_CASE("an error of a node names the node once") {
     DecodeJob noMetadata = whole;
     noMetadata.metadata.reset();
     checkPlacedOnce(noMetadata);
+}
+
+TEST_CASE("what an inner node shows is drawn, whatever its points' own colours are") {
+    SmallCloud cloud = makeSmallCloud({.innerColour = InnerColour::mean});
+    DecodeJob job = wholeJob(cloud);
+    REQUIRE(job.entry.attributeBytes[0] > 0); // the exact colours, which nobody asks for
+    ResidentNode node = *decodeNode(job);
+    NodePicture picture = *decodePicture(cloud.metadata, job.entry, strataCount, job.picture);
+    REQUIRE(node.colourWords.size() == picture.size());
+    bool asShown = true;
+    for (std::size_t i = 0; i < picture.size(); ++i)
+        asShown = asShown && (node.colourWords[i] & 255) == picture.colour[3 * i] >> 8u;
+    CHECK(asShown);
+
+    SmallCloud exact = makeSmallCloud();
+    CHECK(intensityBlock(cloud.metadata) == intensityBlock(exact.metadata) + 1);
+    SmallCloud intensity =
+        makeSmallCloud({.colour = PictureColour::intensity, .innerColour = InnerColour::mean});
+    CHECK(intensityBlock(intensity.metadata) < 0);
 }
 
 TEST_CASE("intensities that the cloud does not have are an error of the node") {

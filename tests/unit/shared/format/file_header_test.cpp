@@ -39,10 +39,22 @@ TEST_CASE("a header with any bit altered is refused") {
 TEST_CASE("other files and other versions are refused in a sentence") {
     CHECK(parseFileHeader(Bytes(64, 'x')).error().what == "this is no .stipple file");
     Bytes bytes = sampleHeader();
-    bytes[8] = 2;
+    bytes[8] = 3;
     auto newer = parseFileHeader(bytes);
     CHECK(newer.error().code == ErrorCode::unsupported);
-    CHECK(newer.error().what == "the file has format version 2; this program reads version 1");
+    CHECK(newer.error().what == "the file has format version 3; this program reads versions 1 to 2");
+}
+
+TEST_CASE("both versions are read, but no mean colours in the first") {
+    CloudMetadata metadata = sampleMetadata();
+    for (InnerColour colour : {InnerColour::exact, InnerColour::mean}) {
+        metadata.innerColour = colour;
+        FileHeader header{123456, {64, 2000}, {2064, 300}, versionFor(metadata)};
+        header = need(parseFileHeader(writeFileHeader(header)));
+        CHECK(header.version == (colour == InnerColour::mean ? 2 : 1));
+        CHECK(checkVersion(header, metadata).ok());
+    }
+    CHECK(checkVersion(need(parseFileHeader(sampleHeader())), metadata).error().code == ErrorCode::corrupt);
 }
 
 TEST_CASE("parts outside the file are refused") {

@@ -25,6 +25,7 @@ CloudMetadata fullMetadata() {
     metadata.bounds = {{-5, -6, -7}, {1, 2, INT64_MAX}};
     metadata.pointCount = 1000000000000;
     metadata.colourIs8Bit = true;
+    metadata.innerColour = InnerColour::mean;
     metadata.schema.attributes[0].noData = -1.5;
     metadata.schema.attributes[1].scale = 0.006;
     metadata.statistics[0] = {0.1, 0.2, 0.3, 0.4, {{-5, 7}, {200, UINT64_MAX}}};
@@ -58,6 +59,7 @@ TEST_CASE("metadata come back, every double to its last bit") {
     CHECK(read.statistics == metadata.statistics);
     CHECK(read.pictureColour == metadata.pictureColour);
     CHECK(read.colourIs8Bit);
+    CHECK(read.innerColour == InnerColour::mean);
     CHECK(read.pointHash == metadata.pointHash);
     CHECK(read.sources == metadata.sources);
     CHECK(read.tool == metadata.tool);
@@ -85,6 +87,18 @@ TEST_CASE("the sampling is poisson unless another is named") {
     auto read = parseMetadata(framed(text));
     REQUIRE_FALSE(read.ok());
     CHECK(read.error().what == "\"sampling\" is not poisson, random or grid");
+}
+
+TEST_CASE("inner nodes show their own colours unless metadata say otherwise") {
+    CloudMetadata metadata = sampleMetadata();
+    std::string text = textOf(writeMetadata(metadata));
+    CHECK(text.find("innerColour") == std::string::npos);
+    CHECK(need(parseMetadata(framed(text))).innerColour == InnerColour::exact);
+    metadata.innerColour = InnerColour::mean;
+    metadata.pictureColour = PictureColour::none;
+    auto read = parseMetadata(writeMetadata(metadata));
+    REQUIRE_FALSE(read.ok());
+    CHECK(read.error().what == "\"innerColour\" is not exact, although there is no colour");
 }
 
 TEST_CASE("statistics that are no finite number come back") {

@@ -1,7 +1,8 @@
 // docs/FORMAT.md is the specification: the bytes it shows are read from it and given to the code. And a file
-// of version 1, frozen when the version was, must give the same points for ever.
+// of each version, frozen when the version was, must give the same points for ever.
 #include "shared/codec/colour_codec.hpp"
 #include "shared/codec/column_codec.hpp"
+#include "shared/codec/exact_colour.hpp"
 #include "shared/codec/position_codec.hpp"
 #include "shared/codec/progressive_order.hpp"
 #include "shared/codec/section.hpp"
@@ -158,6 +159,20 @@ TEST_CASE("the specification's colours are what the code reads and writes") {
           std::vector<std::uint16_t>{10, 20, 30, 200, 100, 50, 12, 20, 30, 11, 21, 31, 12, 20, 29});
 }
 
+TEST_CASE("the specification's exact colours are what the code reads and writes") {
+    // In Morton order, as sorted.
+    const std::vector<std::uint16_t> exact{10, 20, 30, 11, 21, 31, 12, 20, 30, 12, 20, 29, 200, 100, 50};
+    std::vector<std::uint16_t> shown{11, 20, 30, 11, 20, 30, 12, 20, 30, 12, 20, 29, 180, 90, 48};
+    Bytes bytes = example("exact colours");
+    ByteWriter to;
+    writeExactColour(to, exact, shown, 3);
+    CHECK(hex(to.bytes()) == hex(bytes));
+    ByteReader from(bytes);
+    std::vector<std::uint32_t> order{0, 1, 2, 3, 4};
+    REQUIRE(readExactColour(from, order, 3, shown).ok());
+    CHECK(shown == exact);
+}
+
 TEST_CASE("the specification's columns are what the code reads and writes") {
     Bytes constant(6, 4), values{1, 0, 2, 0, 250, 0};
     ByteWriter to;
@@ -169,30 +184,70 @@ TEST_CASE("the specification's columns are what the code reads and writes") {
     CHECK(need(decodeColumn(fromRanked, 3, 2, 1)) == values);
 }
 
-TEST_CASE("a frozen file of version 1 gives the points that it was made of") {
-    std::string path = STIPPLE_SOURCE_DIR "/tests/unit/shared/format/frozen/v1.stipple";
+namespace {
+
+// Two nodes of points and, in version 2, what the first shows instead of its colours.
+struct Frozen {
     CloudMetadata metadata = sampleMetadata();
-    metadata.name = "frozen";
-    PointBatch scan = scanPoints(metadata, {1, 0, 1, 0}, 300), noise = randomPoints(metadata, {}, 8, 3);
-    metadata.pointCount = scan.size() + noise.size();
-    PointHash hash = hashOf(metadata, scan);
-    hash.add(hashOf(metadata, noise));
-    metadata.pointHash = hash.hex();
-    if (std::getenv("STIPPLE_FREEZE") != nullptr) { // once for each version
+    PointBatch root, child;
+    std::vector<std::uint16_t> shown;
+    PointHash hash;
+
+    explicit Frozen(std::uint32_t version) {
+        metadata.name = "frozen";
+        PointBatch noise = randomPoints(metadata, version == 1 ? NodeKey{} : childKey, 8, 3),
+                   scan = scanPoints(metadata, version == 1 ? childKey : NodeKey{}, 300);
+        root = version == 1 ? noise : scan;
+        child = version == 1 ? scan : noise;
+        if (version == 2) {
+            metadata.innerColour = InnerColour::mean;
+            int red = metadata.schema.find(attribute_names::red);
+            for (std::size_t i = 0; i < 3 * root.size(); ++i)
+                shown.push_back(static_cast<std::uint16_t>(
+                    root.value<std::uint16_t>(red + static_cast<int>(i % 3), i / 3) / 2 + i % 7));
+        }
+        metadata.pointCount = root.size() + child.size();
+        hash = hashOf(metadata, root);
+        hash.add(hashOf(metadata, child));
+        metadata.pointHash = hash.hex();
+    }
+    void write(const std::string& path) const {
         auto writer = need(CloudWriter::create(path));
-        need(writer->add(need(encodeNode(metadata, {}, noise))));
-        need(writer->add(need(encodeNode(metadata, {1, 0, 1, 0}, scan))));
+        need(writer->add(need(encodeNode(metadata, {}, root, shown))));
+        need(writer->add(need(encodeNode(metadata, childKey, child))));
         need(writer->finish(metadata));
     }
-    auto source = need(openFileSource(path));
-    auto reader = need(CloudReader::open(*source));
-    PointHash read;
-    need(reader->visitNodes([&](const NodeEntry& entry) -> Status {
-        STIPPLE_TRY(batch, reader->readNode(entry));
-        read.add(metadata.schema, batch);
-        return {};
-    }));
-    CHECK(reader->metadata().name == "frozen");
-    CHECK(reader->metadata().pointHash == hash.hex());
-    CHECK(read == hash);
+    static constexpr NodeKey childKey{1, 0, 1, 0};
+};
+
+} // namespace
+
+TEST_CASE("a frozen file of each version gives the points that it was made of") {
+    for (std::uint32_t version : {1u, 2u}) {
+        std::string path =
+            STIPPLE_SOURCE_DIR "/tests/unit/shared/format/frozen/v" + std::to_string(version) + ".stipple";
+        Frozen frozen(version);
+        const char* freeze = std::getenv("STIPPLE_FREEZE"); // the version; once for each
+        if (freeze != nullptr && freeze == std::to_string(version))
+            frozen.write(path);
+        auto source = need(openFileSource(path));
+        auto reader = need(CloudReader::open(*source));
+        PointHash read;
+        need(reader->visitNodes([&](const NodeEntry& entry) -> Status {
+            STIPPLE_TRY(batch, reader->readNode(entry));
+            read.add(frozen.metadata.schema, batch);
+            if (version == 1 || entry.key.level > 0)
+                return {};
+            STIPPLE_TRY(strata, readNow(*source, entry.strataRange(strataCount)));
+            STIPPLE_TRY(picture, decodePicture(reader->metadata(), entry, strataCount, strata));
+            std::sort(picture.colour.begin(), picture.colour.end());
+            std::sort(frozen.shown.begin(), frozen.shown.end());
+            CHECK(picture.colour == frozen.shown);
+            return {};
+        }));
+        CHECK(reader->header().version == version);
+        CHECK(reader->metadata().name == "frozen");
+        CHECK(reader->metadata().pointHash == frozen.hash.hex());
+        CHECK(read == frozen.hash);
+    }
 }

@@ -1,0 +1,112 @@
+#include "shared/codec/exact_colour.hpp"
+
+#include "shared/base/text.hpp"
+#include "shared/codec/colour_planes.hpp"
+
+#include <vector>
+
+namespace stipple {
+
+namespace {
+
+enum class Coding : std::uint8_t { residual = 0, plain = 1 };
+
+// One channel, of 16 bits or of a byte.
+template <class T>
+std::vector<T> channelOf(std::span<const std::uint16_t> values, std::size_t channels, std::size_t channel,
+                         int shift) {
+    std::vector<T> part(values.size() / channels);
+    for (std::size_t i = 0; i < part.size(); ++i)
+        part[i] = static_cast<T>(values[i * channels + channel] >> shift);
+    return part;
+}
+
+template <class T>
+void subtract(std::vector<T>& from, const std::vector<T>& what) {
+    for (std::size_t i = 0; i < from.size(); ++i)
+        from[i] = static_cast<T>(from[i] - what[i]);
+}
+
+template <class T>
+void encodeAs(ByteWriter& to, std::span<const std::uint16_t> exact, std::span<const std::uint16_t> shown,
+              std::size_t channels, int shift) {
+    ByteWriter residual, plain;
+    residual.write(Coding::residual);
+    plain.write(Coding::plain);
+    std::vector<T> green;
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::size_t channel = channels == 1 ? 0 : channelOrder[c];
+        std::vector<T> own = channelOf<T>(exact, channels, channel, shift);
+        writePlane<T>(plain, own);
+        subtract(own, channelOf<T>(shown, channels, channel, shift));
+        if (c == 0)
+            green = own;
+        else
+            subtract(own, green);
+        writePlane<T>(residual, own);
+    }
+    to.writeBytes(plain.size() < residual.size() ? plain.bytes() : residual.bytes());
+}
+
+template <class T>
+Status readPlane(ByteReader& from, std::vector<T>& values) {
+    Bytes part(values.size());
+    for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
+        STIPPLE_CHECK(readFullSection(from, part));
+        for (std::size_t i = 0; i < part.size(); ++i)
+            values[i] = static_cast<T>(values[i] | part[i] << (8 * byte));
+    }
+    return {};
+}
+
+template <class T>
+Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::size_t channels,
+                ColourWidth width, std::span<std::uint16_t> colours) {
+    auto coding = from.read<Coding>();
+    if (!from.ok() || coding > Coding::plain)
+        return Error{ErrorCode::corrupt, "unknown way to store exact colours", {}, {}};
+    const std::uint32_t unit = unitOf(width);
+    const int shift = shiftOf(width);
+    std::vector<T> green;
+    for (std::size_t c = 0; c < channels; ++c) {
+        std::size_t channel = channels == 1 ? 0 : channelOrder[c];
+        std::vector<T> own(order.size());
+        STIPPLE_CHECK(readPlane(from, own));
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            std::uint16_t& value = colours[i * channels + channel];
+            T part = own[order[i]];
+            if (coding == Coding::residual)
+                part = static_cast<T>(part + (value >> shift) + (c > 0 ? green[order[i]] : T{}));
+            value = static_cast<std::uint16_t>(part * unit);
+        }
+        if (c == 0)
+            green = std::move(own);
+    }
+    return {};
+}
+
+} // namespace
+
+// [u8 width] [u8 coding] [per channel: section of the low bytes, and one of the high bytes if wide]
+void writeExactColour(ByteWriter& to, std::span<const std::uint16_t> exact,
+                      std::span<const std::uint16_t> shown, int channels) {
+    ColourWidth width = narrowestWidth(exact);
+    to.write(width);
+    auto count = static_cast<std::size_t>(channels);
+    if (width == ColourWidth::wide)
+        encodeAs<std::uint16_t>(to, exact, shown, count, 0);
+    else
+        encodeAs<std::uint8_t>(to, exact, shown, count, shiftOf(width));
+}
+
+Status readExactColour(ByteReader& from, std::span<const std::uint32_t> order, int channels,
+                       std::span<std::uint16_t> colours) {
+    auto width = from.read<ColourWidth>();
+    if (!from.ok() || width > ColourWidth::repeated)
+        return Error{ErrorCode::corrupt, cat("unknown colour width ", static_cast<int>(width)), {}, {}};
+    auto count = static_cast<std::size_t>(channels);
+    return width == ColourWidth::wide ? decodeAs<std::uint16_t>(from, order, count, width, colours)
+                                      : decodeAs<std::uint8_t>(from, order, count, width, colours);
+}
+
+} // namespace stipple
