@@ -225,7 +225,7 @@ BoxD CloudFilter::worldBoxOf(const BoxI& steps) const {
 
 CloudFilter::Overlaps CloudFilter::overlapsOf(const NodeEntry& entry) const {
     BoxI cube = cubeOf(entry.key);
-    BoxI common = intersection(cube, reach_);
+    BoxI common = boxOfWanted(entry);
     Overlaps overlaps;
     if (common.empty()) {
         overlaps.box = Overlap::none;
@@ -240,6 +240,10 @@ CloudFilter::Overlaps CloudFilter::overlapsOf(const NodeEntry& entry) const {
     if (filter_.corridor)
         overlaps.corridor = filter_.corridor->overlapOf(box);
     return overlaps;
+}
+
+BoxI CloudFilter::boxOfWanted(const NodeEntry& entry) const {
+    return intersection(cubeOf(entry.key), reach_);
 }
 
 bool CloudFilter::thins(const NodeEntry& entry) const {

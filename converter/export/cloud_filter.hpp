@@ -37,6 +37,8 @@ class CloudFilter {
     static Result<CloudFilter> make(const CloudMetadata& metadata, const PointFilter& filter);
 
     Verdict verdictOn(const NodeEntry& entry) const;
+    // Where wanted points of the node and of those below it can lie (grid integers).
+    BoxI boxOfWanted(const NodeEntry& entry) const;
     // Can a node below `entry` hold wanted points?
     bool wantsBelow(const NodeEntry& entry) const;
     bool wantsEverything() const { return !restricts_ && deepestLevel_ == maxLevel; }

@@ -91,6 +91,9 @@ struct HierarchyCounters {
 class CloudReader {
   public:
     static Result<std::unique_ptr<CloudReader>> open(ByteSource& source); // source outlives the reader
+    // Over a file whose header and metadata are known already; reads nothing.
+    static std::unique_ptr<CloudReader> over(ByteSource& source, const FileHeader& header,
+                                             CloudMetadata metadata);
     virtual ~CloudReader() = default;
 
     virtual const FileHeader& header() const = 0;
@@ -101,6 +104,8 @@ class CloudReader {
     // true, nothing further is visited or read.
     virtual Result<HierarchyCounters> visitWanted(const std::function<Result<bool>(const NodeEntry&)>& visit,
                                                   const bool* isEnough = nullptr) = 0;
+    // The nodes of one chunk.
+    virtual Result<std::vector<NodeEntry>> readChunk(const ChunkPlace& place) = 0;
     // Every node.
     Status visitNodes(const std::function<Status(const NodeEntry&)>& visit);
     // Reads what decodeNode() needs for some attributes, and no other byte of the node.

@@ -25,6 +25,8 @@ bool holdsChildren(const std::vector<NodeEntry>& nodes, const NodeKey& parent, s
 class Reader final : public CloudReader {
   public:
     explicit Reader(ByteSource& source) : source_(source) {}
+    Reader(ByteSource& source, const FileHeader& header, CloudMetadata metadata)
+        : source_(source), header_(header), metadata_(std::move(metadata)) {}
 
     Status open() {
         STIPPLE_TRY(start, readNow(source_, {0, fileHeaderBytes}));
@@ -70,7 +72,7 @@ class Reader final : public CloudReader {
             counters.bytesRead += next.range.size;
             if (counters.bytesRead > header_.fileBytes)
                 return Error{ErrorCode::corrupt, "the hierarchy chunks overlap", source_.name(), {}};
-            STIPPLE_TRY(nodes, readHierarchyChunk(source_, header_, metadata_, next));
+            STIPPLE_TRY(nodes, readChunk(next));
             for (const NodeEntry& node : nodes) {
                 if (isEnough && *isEnough)
                     break;
@@ -84,6 +86,10 @@ class Reader final : public CloudReader {
             }
         }
         return counters;
+    }
+
+    Result<std::vector<NodeEntry>> readChunk(const ChunkPlace& place) override {
+        return readHierarchyChunk(source_, header_, metadata_, place);
     }
 
     Result<NodeBytes> fetchNode(const NodeEntry& entry, std::span<const int> attributes) override {
@@ -221,6 +227,11 @@ Result<PointBatch> CloudReader::readNode(const NodeEntry& entry) {
     if (!points)
         return points.error().at(sourceName());
     return points;
+}
+
+std::unique_ptr<CloudReader> CloudReader::over(ByteSource& source, const FileHeader& header,
+                                               CloudMetadata metadata) {
+    return std::make_unique<Reader>(source, header, std::move(metadata));
 }
 
 Result<std::unique_ptr<CloudReader>> CloudReader::open(ByteSource& source) {
