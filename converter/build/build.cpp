@@ -147,6 +147,16 @@ class Builder {
         return {};
     }
 
+    // The rows of each cell, then those of each sample, as loadRows() loads them.
+    static std::vector<std::size_t> partsOf(const Item& item) {
+        std::vector<std::size_t> parts;
+        for (const CellRef& cell : item.cells)
+            parts.push_back(static_cast<std::size_t>(cell.store->count(cell.cell)));
+        for (const Item::Sample& sample : item.samples)
+            parts.push_back(static_cast<std::size_t>(sample.points));
+        return parts;
+    }
+
     // With `keep` the rows stay in their cells too.
     Result<Subtree> load(const Item& item, bool keep, SubtreeBuffers& buffers) {
         if (item.points > UINT32_MAX)
@@ -155,7 +165,7 @@ class Builder {
                          "", "thin the input"};
         std::size_t count = static_cast<std::size_t>(item.points);
         STIPPLE_CHECK(loadRows(item, keep, buffers.rows(count, tiles_.layout.rowBytes())));
-        return Subtree(tiles_.layout, tiles_.grid.cube, item.key, buffers, count);
+        return Subtree(tiles_.layout, tiles_.grid.cube, item.key, buffers, partsOf(item));
     }
 
     using Buffers = std::unique_ptr<SubtreeBuffers>;

@@ -3,12 +3,16 @@
 #include "converter/build/morton.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
+#include <utility>
 
 namespace stipple {
 
 namespace {
-constexpr int keyLevels = 21;  // levels of the octree that a 64-bit key holds
-constexpr int sortedBits = 33; // of the key, by radix: three passes; few points share them
+constexpr int keyLevels = 21;        // levels of the octree that a 64-bit key holds
+constexpr std::size_t fewRows = 512; // that radix sorting is not worth its tables for
+constexpr int sortedBits = 33;       // of the key, by radix: three passes; few points share them
 
 // The lower 21 bits of `value`, two zero bits between them.
 std::uint64_t spread(std::uint64_t value) {
@@ -43,23 +47,75 @@ class RowSorter {
           lowBits_(std::max(0, bits_ - keyLevels)), rows_(rows), items_(items), other_(other), count_(count) {
     }
 
-    const KeyedIndex* sort() {
-        const int keyBits = 3 * (bits_ - lowBits_), shift = std::max(0, keyBits - sortedBits);
+    // The rows came in parts of so many; see Subtree.
+    const KeyedIndex* sort(std::span<const std::size_t> partRows) {
         for (std::size_t i = 0; i < count_; ++i)
             items_[i] = {mortonKey(relative(i), lowBits_), static_cast<std::uint32_t>(i)};
-        items_ = radixSort(items_, other_, count_, keyBits - shift, shift);
-        for (std::size_t i = 0, end = 0; i < count_; i = end) {
-            for (end = i + 1; end < count_ && items_[end].key >> shift == items_[i].key >> shift;)
-                ++end;
-            if (end - i > 1)
-                sortRun(i, end);
+        std::vector<Part> parts;
+        std::size_t end = 0;
+        for (std::size_t rows : partRows) {
+            std::size_t begin = std::exchange(end, std::min(end + rows, count_));
+            if (end > begin)
+                parts.push_back({begin, end});
         }
+        if (end < count_)
+            parts.push_back({end, count_});
+        for (const Part& part : parts)
+            sortPart(part);
+        if (!concatenate(parts))
+            sortPart({0, count_});
         return items_;
     }
 
   private:
     const std::uint8_t* row(std::size_t index) const { return rows_ + index * layout_.rowBytes(); }
     Vec3i relative(std::size_t index) const { return layout_.position(row(index)) - corner_; }
+
+    struct Part {
+        std::size_t begin, end;
+    };
+
+    void sortPart(Part part) {
+        KeyedIndex *items = items_ + part.begin, *other = other_ + part.begin;
+        const std::size_t count = part.end - part.begin;
+        if (count < fewRows)
+            return sortRun(part.begin, part.end);
+        std::uint64_t differing = 0;
+        bool isSorted = true;
+        for (std::size_t i = 1; i < count; ++i) {
+            differing |= items[i].key ^ items[0].key;
+            isSorted = isSorted && items[i - 1].key <= items[i].key;
+        }
+        const int differingBits = static_cast<int>(std::bit_width(differing));
+        const int shift = isSorted ? 0 : std::max(0, differingBits - sortedBits);
+        if (!isSorted && radixSort(items, other, count, differingBits - shift, shift) == other)
+            std::memcpy(items, other, count * sizeof(KeyedIndex));
+        for (std::size_t i = part.begin, end = 0; i < part.end; i = end) {
+            for (end = i + 1; end < part.end && items_[end].key >> shift == items_[i].key >> shift;)
+                ++end;
+            if (end - i > 1)
+                sortRun(i, end);
+        }
+    }
+
+    // Puts sorted parts one after the other. False if they overlap.
+    bool concatenate(std::vector<Part>& parts) {
+        auto isBefore = [this](const Part& a, const Part& b) {
+            return items_[a.begin].key < items_[b.begin].key;
+        };
+        const bool inOrder = std::is_sorted(parts.begin(), parts.end(), isBefore);
+        std::sort(parts.begin(), parts.end(), isBefore);
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            if (items_[parts[i - 1].end - 1].key >= items_[parts[i].begin].key)
+                return false;
+        if (inOrder)
+            return true;
+        KeyedIndex* to = other_;
+        for (const Part& part : parts)
+            to = std::copy(items_ + part.begin, items_ + part.end, to);
+        std::swap(items_, other_);
+        return true;
+    }
 
     void sortRun(std::size_t begin, std::size_t end) {
         std::sort(items_ + begin, items_ + end, [this](const KeyedIndex& a, const KeyedIndex& b) {
@@ -84,6 +140,20 @@ class RowSorter {
 };
 } // namespace
 
+namespace {
+// A call to memcpy costs more than a row.
+void copyRow(std::uint8_t* to, const std::uint8_t* from, std::size_t bytes) {
+    constexpr std::size_t step = 16;
+    if (bytes < step) {
+        std::memcpy(to, from, bytes);
+        return;
+    }
+    for (std::size_t at = 0; at + step <= bytes; at += step)
+        std::memcpy(to + at, from + at, step);
+    std::memcpy(to + bytes - step, from + bytes - step, step);
+}
+} // namespace
+
 std::uint8_t* SubtreeBuffers::rows(std::size_t count, std::size_t rowBytes) {
     return rows_.of(count * rowBytes);
 }
@@ -99,22 +169,29 @@ T* SubtreeBuffers::Room<T>::of(std::size_t count) {
 }
 
 Subtree::Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key, SubtreeBuffers& buffers,
-                 std::size_t count)
-    : layout_(&layout), cube_(cube), key_(key), count_(static_cast<std::uint32_t>(count)) {
-    sort(buffers);
+                 std::span<const std::size_t> partRows)
+    : layout_(&layout), cube_(cube), key_(key),
+      count_(static_cast<std::uint32_t>(std::accumulate(partRows.begin(), partRows.end(), std::size_t{0}))) {
+    sort(buffers, partRows);
 }
 
-void Subtree::sort(SubtreeBuffers& buffers) {
+void Subtree::sort(SubtreeBuffers& buffers, std::span<const std::size_t> partRows) {
     constexpr std::size_t ahead = 24;
     const std::uint8_t* rows = buffers.rows_.items.get();
     RowSorter sorter(*layout_, cube_, key_, rows, buffers.keys_.of(count_), buffers.otherKeys_.of(count_),
                      count_);
-    const KeyedIndex* items = sorter.sort();
+    const KeyedIndex* items = sorter.sort(partRows);
+    rows_ = rows;
+    bool inPlace = true;
+    for (std::size_t i = 0; i < count_ && inPlace; ++i)
+        inPlace = items[i].index == i;
+    if (inPlace)
+        return;
     const std::size_t rowBytes = layout_->rowBytes();
     std::uint8_t* sorted = buffers.sorted_.of(count_ * rowBytes);
     for (std::size_t i = 0; i < count_; ++i) {
         __builtin_prefetch(rows + items[std::min<std::size_t>(i + ahead, count_ - 1)].index * rowBytes);
-        std::memcpy(sorted + i * rowBytes, rows + items[i].index * rowBytes, rowBytes);
+        copyRow(sorted + i * rowBytes, rows + items[i].index * rowBytes, rowBytes);
     }
     rows_ = sorted;
 }

@@ -51,11 +51,12 @@ class SubtreeBuffers {
 
 class Subtree {
   public:
-    // Sorts the `count` rows (fewer than 2^32, all in node `key`) that are in buffers.rows(). The buffers are
-    // borrowed: they outlive the subtree and serve no other meanwhile. Memory: twice the rows and 32 bytes a
-    // point.
+    // Sorts the rows (fewer than 2^32, all in node `key`) that are in buffers.rows(). They came in parts of
+    // `partRows` each: best such as are nodes of the octree, as those are sorted apart from each other, and
+    // those that are in order already not at all. The buffers are borrowed: they outlive the subtree and
+    // serve no other meanwhile. Memory: twice the rows and 32 bytes a point.
     Subtree(const RowLayout& layout, const RootCube& cube, NodeKey key, SubtreeBuffers& buffers,
-            std::size_t count);
+            std::span<const std::size_t> partRows);
 
     // Splits down to leaves of at most `capacity` points …
     void splitByCount(std::uint32_t capacity);
@@ -74,7 +75,7 @@ class Subtree {
     Vec3i position(std::uint32_t rank) const { return layout_->position(row(rank)); }
 
   private:
-    void sort(SubtreeBuffers& buffers);
+    void sort(SubtreeBuffers& buffers, std::span<const std::size_t> partRows);
     template <class MustSplit>
     void split(MustSplit mustSplit);
     void splitNode(std::size_t index);

@@ -36,7 +36,7 @@ struct Node {
         layout.pack(batch, all, buffers.rows(all.size(), layout.rowBytes()));
         NodeKey key;
         key.level = static_cast<std::uint8_t>(level);
-        subtree = std::make_unique<Subtree>(layout, cube, key, buffers, all.size());
+        subtree = std::make_unique<Subtree>(layout, cube, key, buffers, std::array{all.size()});
         subtree->splitByCount(1);
         candidates.ranks = all;
         for (std::uint32_t rank : all) {
