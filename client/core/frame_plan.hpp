@@ -13,8 +13,9 @@
 //
 // p - cell is exact in 32-bit integers. p - cell and -fraction never differ in sign outside the node, so
 // nothing cancels: the error is relative to the distance from the camera, under 0.001 pixel in perspective
-// for any grid and zoom. In orthographic views that distance is the depth of the content: at most 2^-23
-// of it, which is 0.01 pixel where the content is 80,000 pixels deep.
+// for any grid and zoom. In orthographic views that distance is the depth of the content, and float would be
+// off by 2^-23 of it; where that shows, positions in the picture are integers
+// (client/render/raster_setup.hpp).
 //
 // Depth: a point at view distance d (along `forward`) in [near, far] has depth log2(d / near) /
 // log2(far / near) in [0, 1]. Points nearer than near or beyond far are not drawn.
@@ -54,6 +55,7 @@ struct DrawNode {
     std::uint32_t pointCount = 0;             // draw this prefix; <= node->pointCount
     std::array<std::int32_t, 3> cameraCell{}; // see above; >= 0
     std::array<float, 3> cameraFraction{};    // see above
+    std::array<double, 3> cameraOffset{};     // the same, before it was rounded to float
     Vec3d scale;                              // world units per integer
     double cameraZ = 0; // world z of the camera, for elevation: z = cameraZ + relative.z
     double spacing = 0; // minimum distance of the node's points, world units

@@ -75,7 +75,8 @@ DrawNode planNode(std::shared_ptr<const ResidentNode> node, std::uint32_t pointC
         std::int64_t cell = at.cell - corner[axis];
         std::int64_t inside = std::clamp<std::int64_t>(cell, 0, last);
         draw.cameraCell[i] = static_cast<std::int32_t>(inside);
-        draw.cameraFraction[i] = static_cast<float>(static_cast<double>(cell - inside) + at.fraction);
+        draw.cameraOffset[i] = static_cast<double>(cell - inside) + at.fraction;
+        draw.cameraFraction[i] = static_cast<float>(draw.cameraOffset[i]);
     }
     draw.pointCount = std::min(pointCount, node->pointCount);
     draw.scale = grid.scale;

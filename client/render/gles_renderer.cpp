@@ -23,6 +23,7 @@ constexpr float levelsInv = 1.0f / 255.0f;
 struct PointProgram {
     Program program;
     GLint cell, fraction, rowX, rowY, rowD, positionShift, colourSource, ramp;
+    GLint deep, fractionBits, lowX, highX, lowY, highY, origin;
     GLint centre, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
         sizeRange64, gradient;
 
@@ -39,6 +40,13 @@ struct PointProgram {
         made.rowY = at("uRowY");
         made.rowD = at("uRowD");
         made.positionShift = at("uPositionShift");
+        made.deep = at("uDeep");
+        made.fractionBits = at("uFractionBits");
+        made.lowX = at("uLowX");
+        made.highX = at("uHighX");
+        made.lowY = at("uLowY");
+        made.highY = at("uHighY");
+        made.origin = at("uOrigin");
         made.colourSource = at("uColourSource");
         made.ramp = at("uRamp");
         made.centre = at("uCentre");
@@ -76,6 +84,15 @@ struct PointProgram {
         glUniform3fv(rowY, 1, node.rowY.data());
         glUniform3fv(rowD, 1, node.rowD.data());
         glUniform1i(positionShift, node.positionShift);
+        glUniform1i(deep, node.deep);
+        if (node.deep) {
+            glUniform1i(fractionBits, node.fractionBits);
+            glUniform3uiv(lowX, 1, node.lowX.data());
+            glUniform3uiv(highX, 1, node.highX.data());
+            glUniform3uiv(lowY, 1, node.lowY.data());
+            glUniform3uiv(highY, 1, node.highY.data());
+            glUniform2ui(origin, node.originX, node.originY);
+        }
         glUniform1i(colourSource, static_cast<GLint>(node.source));
         glUniform2f(ramp, node.rampScale, node.rampOffset);
     }

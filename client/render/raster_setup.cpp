@@ -41,6 +41,47 @@ ColourSource sourceOf(ColourMode mode, const ResidentNode& node) {
     return ColourSource::plain;
 }
 
+// How far from the camera a point of the node can lie, in pixels, summed over the axes.
+double reachPixels(const DrawNode& node, double focal) {
+    double reach = 0, side = std::ldexp(1.0, node.node->nodeBits);
+    for (std::size_t i = 0; i < 3; ++i) {
+        double from = node.cameraCell[i] + node.cameraOffset[i];
+        reach += std::max(std::abs(from), std::abs(side - from)) * node.scale[static_cast<int>(i)];
+    }
+    return reach * focal;
+}
+
+// `pixels` in units of 2^-fractionBits, modulo 2^32; what lies between two units goes to the nearer.
+std::uint32_t wrapped(double pixels, int fractionBits) {
+    double units = std::fmod(std::ldexp(pixels, fractionBits), 0x1p32);
+    return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llround(units)));
+}
+
+// From here on floats are off by half a thousandth of a pixel.
+constexpr double deepPixels = 8192;
+
+void setDeep(const FramePlan& plan, const DrawNode& node, double focalX, double focalY, RasterNode& raster) {
+    double reach = reachPixels(node, std::max(focalX, focalY));
+    raster.deep = plan.view.projection == Projection::orthographic && reach > deepPixels;
+    if (!raster.deep)
+        return;
+    int bits = raster.fractionBits = std::clamp(24 - (std::ilogb(reach) - 28), 8, 24);
+    double x = plan.width * 0.5, y = plan.height * 0.5;
+    for (int axis = 0; axis < 3; ++axis) {
+        auto i = static_cast<std::size_t>(axis);
+        double rowX = plan.view.right[axis] * node.scale[axis] * focalX;
+        double rowY = plan.view.up[axis] * node.scale[axis] * focalY;
+        raster.lowX[i] = wrapped(rowX, bits);
+        raster.highX[i] = wrapped(rowX, bits + 16);
+        raster.lowY[i] = wrapped(rowY, bits);
+        raster.highY[i] = wrapped(rowY, bits + 16);
+        x -= node.cameraOffset[i] * rowX;
+        y -= node.cameraOffset[i] * rowY;
+    }
+    raster.originX = wrapped(x, bits);
+    raster.originY = wrapped(y, bits);
+}
+
 // The middle of a node along the view direction, world units.
 double centreDistance(const ViewTransform& view, const DrawNode& node) {
     double half = std::ldexp(0.5, node.node->nodeBits);
@@ -91,6 +132,7 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
     raster.fraction = node.cameraFraction;
     raster.cell = node.cameraCell;
     raster.positionShift = node.node->positionShift;
+    setDeep(plan, node, focal.x, focal.y, raster);
 
     raster.source = sourceOf(style.colourMode, *node.node);
     Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;

@@ -9,6 +9,15 @@
 //            (x, y) = (r · rowX, r · rowY) / d + centre    pixels; orthographic: without "/ d"
 //            then snapped to the middle of its 1/128-pixel cell: X = 2 floor(128 x) + 1, in 1/256 pixel.
 //            This moves a point by at most 1/256 pixel and survives the sub-pixel grid of a GPU (1/256).
+// Deep nodes in orthographic views, whose r is long against the picture: floats tell x to whole pixels at
+// best, so x and y
+//            are taken modulo 2^(32 - F) pixels in integers that wrap, F bits of them fraction:
+//              s = p - cell = 2^16 high + low, -2^15 <= low < 2^15         per axis
+//              X = originX + Σ low · lowX + high · highX  mod 2^32         lowX = rowX · 2^F, highX = rowX ·
+//              2^(F + 16)
+//            and the float x says which multiple is meant. Off by at most 6 · 2^15 · 2^-(F + 1) pixels: 0.006
+//            for F = 24, which goes with nodes that reach 2^29 pixels away; F falls by one for each doubling
+//            beyond.
 // Size       in whole 1/64 pixels, so half a size is even in 1/256 pixel and, X being odd, no pixel centre
 //            ever lies on the edge of a point: coverage needs no tie rule.
 // Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
@@ -73,6 +82,11 @@ struct RasterNode {
     std::array<float, 3> rowX{}, rowY{}, rowD{}, fraction{};
     std::array<std::int32_t, 3> cell{};
     int positionShift = 0;
+    // Positions by integers, see "Deep nodes"; F = fractionBits.
+    bool deep = false;
+    int fractionBits = 24;
+    std::array<std::uint32_t, 3> lowX{}, highX{}, lowY{}, highY{};
+    std::uint32_t originX = 0, originY = 0;
     ColourSource source = ColourSource::words;
     // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
     // r.z for elevation.

@@ -28,6 +28,8 @@ struct Block {
 };
 
 enum class Sizing { single, fixed, byDistance };
+// `deep`: orthographic, with positions by integers (raster_setup.hpp, "Deep nodes").
+enum class Placing { perspective, orthographic, deep };
 
 struct Words {
     const std::uint32_t* position;
@@ -43,8 +45,35 @@ STIPPLE_INLINE float clampFloat(float value, float low, float high) {
     return value > high ? high : value;
 }
 
+// X of raster_setup.hpp, "Deep nodes".
+struct Wrapping {
+    const std::uint32_t lowA, lowB, lowC, highA, highB, highC, origin;
+    Wrapping(const std::array<std::uint32_t, 3>& low, const std::array<std::uint32_t, 3>& high,
+             std::uint32_t at)
+        : lowA(low[0]), lowB(low[1]), lowC(low[2]), highA(high[0]), highB(high[1]), highC(high[2]),
+          origin(at) {}
+};
+struct Parts {
+    std::uint32_t low, high; // two's complement
+};
+STIPPLE_INLINE Parts partsOf(std::uint32_t steps) {
+    const std::uint32_t low = steps & 0xFFFFu, carry = low >> 15;
+    return {low - (carry << 16), static_cast<std::uint32_t>(static_cast<std::int32_t>(steps) >> 16) + carry};
+}
+STIPPLE_INLINE std::uint32_t wrappedAt(const Wrapping& w, Parts a, Parts b, Parts c) {
+    return w.origin + a.low * w.lowA + b.low * w.lowB + c.low * w.lowC + a.high * w.highA + b.high * w.highB +
+           c.high * w.highC;
+}
+// The 1/128-pixel cell that `exact`, modulo 2^(32 - fractionBits) pixels, means near `estimate`.
+STIPPLE_INLINE std::int32_t deepCell(float estimate, std::uint32_t exact, int fractionBits) {
+    const std::int32_t whole = floorToInt(clampFloat(estimate, -positionLimit, positionLimit));
+    const auto apart = static_cast<std::int32_t>(exact - (static_cast<std::uint32_t>(whole) << fractionBits));
+    return whole * positionCells + (apart >> (fractionBits - 7));
+}
+static_assert(positionCells == 1 << 7);
+
 // One loop without branches over the block, for the vectorizer.
-template <bool Perspective, bool LowWords, Sizing Size>
+template <Placing Place, bool LowWords, Sizing Size>
 STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, Words words,
                               std::size_t count, Block& block) {
     const float ax = node.rowX[0], bx = node.rowX[1], cx = node.rowX[2];
@@ -64,6 +93,8 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const auto columns = static_cast<std::uint32_t>(frame.width);
     const auto lastRow = static_cast<std::uint32_t>(frame.height - 1);
     const std::uint32_t outside = columns * static_cast<std::uint32_t>(frame.height);
+    const Wrapping wrapX(node.lowX, node.highX, node.originX), wrapY(node.lowY, node.highY, node.originY);
+    const int fractionBits = node.fractionBits;
     const float worldSize64 = frame.worldSize64;
     const auto minSize64 = static_cast<float>(frame.minSize64),
                maxSize64 = static_cast<float>(frame.maxSize64);
@@ -79,16 +110,17 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             py = (py << positionShift) | ((low >> 10) & lowMask);
             pz = (pz << positionShift) | ((low >> 20) & lowMask);
         }
-        const float rx = static_cast<float>(static_cast<std::int32_t>(px - cellX)) - fx;
-        const float ry = static_cast<float>(static_cast<std::int32_t>(py - cellY)) - fy;
-        const float rz = static_cast<float>(static_cast<std::int32_t>(pz - cellZ)) - fz;
+        const std::uint32_t sx = px - cellX, sy = py - cellY, sz = pz - cellZ;
+        const float rx = static_cast<float>(static_cast<std::int32_t>(sx)) - fx;
+        const float ry = static_cast<float>(static_cast<std::int32_t>(sy)) - fy;
+        const float rz = static_cast<float>(static_cast<std::int32_t>(sz)) - fz;
 
         const float distance = (rx * ad + ry * bd) + rz * cd;
         bool drawn = (distance >= near) & (distance <= far);
         const float d = drawn ? distance : near;
         float x = (rx * ax + ry * bx) + rz * cx;
         float y = (rx * ay + ry * by) + rz * cy;
-        if constexpr (Perspective) {
+        if constexpr (Place == Placing::perspective) {
             const float inverse = 1.0f / d;
             x = x * inverse;
             y = y * inverse;
@@ -96,7 +128,20 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
         x = x + centreX;
         y = y + centreY;
         block.step[i] = (std::bit_cast<std::uint32_t>(d) - nearBits) >> depthShift;
-        if constexpr (Size == Sizing::single) {
+        if constexpr (Place == Placing::deep) {
+            const Parts a = partsOf(sx), b = partsOf(sy), c = partsOf(sz);
+            const std::int32_t cellsX = deepCell(x, wrappedAt(wrapX, a, b, c), fractionBits);
+            const std::int32_t cellsY = deepCell(y, wrappedAt(wrapY, a, b, c), fractionBits);
+            if constexpr (Size == Sizing::single) {
+                const auto column = static_cast<std::uint32_t>(cellsX >> 7),
+                           row = static_cast<std::uint32_t>(cellsY >> 7);
+                drawn = drawn & (column < columns) & (row <= lastRow);
+                block.pixel[i] = drawn ? (lastRow - row) * columns + column : outside;
+            } else {
+                block.x[i] = drawn ? cellsX : nowhere;
+                block.y[i] = drawn ? cellsY : nowhere;
+            }
+        } else if constexpr (Size == Sizing::single) {
             // Snapping stays inside its pixel.
             drawn = drawn & (x >= 0.0f) & (x < width) & (y >= 0.0f) & (y < height);
             const auto column = static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? x : 0.0f));
@@ -117,21 +162,21 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
 
 using Transform = void (*)(const RasterFrame&, const RasterNode&, Words, std::size_t, Block&);
 
-template <bool P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z>
 void transformBaseline(const RasterFrame& frame, const RasterNode& node, Words words, std::size_t count,
                        Block& block) {
     transform<P, L, Z>(frame, node, words, count, block);
 }
 
 #ifdef STIPPLE_WIDE_VECTORS
-template <bool P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z>
 __attribute__((target("avx2"))) void transformAvx2(const RasterFrame& frame, const RasterNode& node,
                                                    Words words, std::size_t count, Block& block) {
     transform<P, L, Z>(frame, node, words, count, block);
 }
 #endif
 
-template <bool P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z>
 Transform chosenTransform() {
 #ifdef STIPPLE_WIDE_VECTORS
     if (__builtin_cpu_supports("avx2"))
@@ -144,8 +189,12 @@ template <Sizing Z>
 Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
     bool low = node.positionShift > 0;
     if (frame.perspective)
-        return low ? chosenTransform<true, true, Z>() : chosenTransform<true, false, Z>();
-    return low ? chosenTransform<false, true, Z>() : chosenTransform<false, false, Z>();
+        return low ? chosenTransform<Placing::perspective, true, Z>()
+                   : chosenTransform<Placing::perspective, false, Z>();
+    if (node.deep)
+        return low ? chosenTransform<Placing::deep, true, Z>() : chosenTransform<Placing::deep, false, Z>();
+    return low ? chosenTransform<Placing::orthographic, true, Z>()
+               : chosenTransform<Placing::orthographic, false, Z>();
 }
 
 // The cell becomes the smaller of itself and `candidate`.

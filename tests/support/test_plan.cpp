@@ -63,6 +63,7 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
             }
             draw.cameraCell[i] = static_cast<std::int32_t>(cell);
             draw.cameraFraction[i] = fraction;
+            draw.cameraOffset[i] = steps - cell;
         }
         draw.cameraZ = view.position.z;
         draw.node = std::move(resident);

@@ -18,6 +18,13 @@ uniform vec3 uRowX;
 uniform vec3 uRowY;
 uniform vec3 uRowD;
 uniform int uPositionShift;
+uniform bool uDeep;        // positions by integers (raster_setup.hpp, "Deep nodes")
+uniform int uFractionBits;
+uniform uvec3 uLowX;
+uniform uvec3 uHighX;
+uniform uvec3 uLowY;
+uniform uvec3 uHighY;
+uniform uvec2 uOrigin;
 uniform int uColourSource; // ColourSource
 uniform vec2 uRamp;        // scale, offset
 
@@ -41,6 +48,22 @@ float along(vec3 row, vec3 r) {
     return (r.x * row.x + r.y * row.y) + r.z * row.z;
 }
 
+uint alongBits(uvec3 row, uvec3 s) {
+    return row.x * s.x + row.y * s.y + row.z * s.z;
+}
+
+// The 1/128-pixel cell of a deep node's point, whose place in the picture `window` tells but roughly.
+ivec2 deepCell(ivec3 steps, vec2 window) {
+    ivec3 low = steps & 0xFFFF;
+    ivec3 carry = low >> 15;
+    uvec3 high = uvec3((steps >> 16) + carry);
+    uvec3 rest = uvec3(low - (carry << 16));
+    uvec2 exact = uOrigin + uvec2(alongBits(uLowX, rest) + alongBits(uHighX, high),
+                                  alongBits(uLowY, rest) + alongBits(uHighY, high));
+    ivec2 whole = ivec2(floor(window));
+    return whole * 128 + (ivec2(exact - (uvec2(whole) << uFractionBits)) >> (uFractionBits - 7));
+}
+
 vec4 gradientAt(float value) {
     float entry = clamp(value * uRamp.x + uRamp.y, 0.0, float(GRADIENT_ENTRIES - 1));
     return texelFetch(uGradient, ivec2(int(entry), 0), 0);
@@ -62,7 +85,8 @@ void main() {
     p = (p << uPositionShift) |
         (uvec3(aPositionLow, aPositionLow >> 10, aPositionLow >> 20) & uvec3(lowMask));
 #endif
-    vec3 r = vec3(ivec3(p) - uCell) - uFraction;
+    ivec3 steps = ivec3(p) - uCell;
+    vec3 r = vec3(steps) - uFraction;
 
     float d = along(uRowD, r);
     vColour = colourOf(r);
@@ -77,7 +101,8 @@ void main() {
     float inverse = 1.0 / d;
     float scale = uPerspective ? inverse : 1.0;
     vec2 window = vec2(along(uRowX, r), along(uRowY, r)) * scale + uCentre;
-    vec2 cell = floor(clamp(window, vec2(-32768.0), vec2(32768.0)) * 128.0);
+    window = clamp(window, vec2(-32768.0), vec2(32768.0));
+    vec2 cell = uDeep ? vec2(deepCell(steps, window)) : floor(window * 128.0);
 
     float size64 = uSizeByDistance
                        ? floor(clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y))
