@@ -209,9 +209,11 @@ TEST_CASE("a drawn point is within 0.01 pixel of where it belongs in perspective
 }
 
 // All points of an orthographic view are as far from the eye as the content is deep, however small the
-// picture's section is: float then resolves 2^-24 of that depth. Where that shows, this is only the estimate that the
-// rasterizers' integers start from (client/render/raster_setup.hpp, "Deep nodes"; deep_views_test.cpp).
-TEST_CASE("a drawn point's floats in an orthographic view are off by at most 2^-23 of the depth of the content") {
+// picture's section is: float then resolves 2^-24 of that depth. Where that shows, this is only the estimate
+// that the rasterizers' integers start from (client/render/raster_setup.hpp, "Deep nodes";
+// deep_views_test.cpp).
+TEST_CASE(
+    "a drawn point's floats in an orthographic view are off by at most 2^-23 of the depth of the content") {
     for (const Scene& scene : scenes) {
         std::string line;
         double side = std::ldexp(scene.grid.scale.x, scene.cube.nodeBits(scene.level));
