@@ -3,7 +3,7 @@
 #include "shared/base/text.hpp"
 
 #include <cerrno>
-#include <cstdio>
+#include <charconv>
 #include <cstring>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -20,10 +20,14 @@ FileIdentity identityFrom(const struct stat& status) {
 } // namespace
 
 std::string FileIdentity::entityTag() const {
-    char tag[64];
-    std::snprintf(tag, sizeof tag, "\"%llx-%llx-%llx\"", static_cast<unsigned long long>(sizeBytes),
-                  static_cast<unsigned long long>(modifiedNs), static_cast<unsigned long long>(inode));
-    return tag;
+    char tag[64] = "\"";
+    char* at = tag + 1;
+    for (std::uint64_t number : {sizeBytes, static_cast<std::uint64_t>(modifiedNs), inode}) {
+        at = std::to_chars(at, tag + sizeof tag, number, 16).ptr;
+        *at++ = '-';
+    }
+    at[-1] = '"';
+    return {tag, at};
 }
 
 std::int64_t FileIdentity::modifiedSeconds() const {

@@ -1,7 +1,6 @@
 #include "server/http/http_date.hpp"
 
 #include <array>
-#include <cstdio>
 
 namespace stipple::server {
 
@@ -131,11 +130,20 @@ std::string httpDate(std::int64_t seconds) {
     int ofDay = static_cast<int>(seconds - days * 86400);
     Civil date = civilFromDays(days);
     int weekday = static_cast<int>(((days + 4) % 7 + 7) % 7); // 1970-01-01 was a Thursday
-    char text[64];
-    std::snprintf(text, sizeof text, "%s, %02d %s %04d %02d:%02d:%02d GMT",
-                  dayNames[static_cast<std::size_t>(weekday)], date.day,
-                  monthNames[static_cast<std::size_t>(date.month - 1)], date.year, ofDay / 3600,
-                  ofDay / 60 % 60, ofDay % 60);
+    // Two of these stand in every answer; snprintf would take a tenth of its time.
+    std::string text = "Sun, 06 Nov 1994 08:49:37 GMT";
+    auto putName = [&](std::size_t at, const char* name) { text.replace(at, 3, name); };
+    auto putDigits = [&](std::size_t end, int value, int count) {
+        for (; count > 0; --count, value /= 10)
+            text[--end] = static_cast<char>('0' + value % 10);
+    };
+    putName(0, dayNames[static_cast<std::size_t>(weekday)]);
+    putDigits(7, date.day, 2);
+    putName(8, monthNames[static_cast<std::size_t>(date.month - 1)]);
+    putDigits(16, date.year, 4);
+    putDigits(19, ofDay / 3600, 2);
+    putDigits(22, ofDay / 60 % 60, 2);
+    putDigits(25, ofDay % 60, 2);
     return text;
 }
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds lingerTime{1000};
 constexpr std::chrono::hours untilTheJobSays{24 * 365}; // it has limits of its own
+constexpr std::size_t progressBytes = 256 * 1024;       // for each of which ServerLimits::noProgress holds
 constexpr std::size_t firstReadBytes = 2048;            // most requests are shorter
 // A client that pipelines must not keep the other connections of its loop waiting.
 constexpr int answersInTurn = 16;
@@ -158,7 +159,7 @@ bool Connection::startSending() {
 Task<void> Connection::finishSending() {
     auto step = ResponseSender::Step::pause;
     for (std::uint64_t renewedAt = 0; step != ResponseSender::Step::done; step = sender_->step()) {
-        if (sender_->outcome().bodyBytes - renewedAt >= ResponseSender::stepBytes) {
+        if (sender_->outcome().bodyBytes - renewedAt >= progressBytes) {
             renewedAt = sender_->outcome().bodyBytes;
             allow(limits_.noProgress);
         }

@@ -21,7 +21,8 @@ struct SendOutcome {
 // Of fixed size, handed out again and again. Lives on one thread.
 class BufferPool {
   public:
-    static constexpr std::size_t bufferBytes = 64 * 1024;
+    // A head and 64 KiB of a file: measured on loopback, up to there copying costs no more than sendfile.
+    static constexpr std::size_t bufferBytes = 68 * 1024;
     using Buffer = std::unique_ptr<char[]>;
     Buffer take();
     void give(Buffer buffer);
@@ -36,7 +37,7 @@ class BufferPool {
 // early: never padding, never bytes of another version.
 class ResponseSender {
   public:
-    static constexpr std::size_t stepBytes = 256 * 1024;
+    static constexpr std::size_t stepBytes = 1024 * 1024; // 150 µs or so
 
     enum class Step {
         done, // outcome() says how
