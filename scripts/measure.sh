@@ -34,7 +34,7 @@ fi
 
 echo "== requests to the first picture and to the whole one (server's log)"
 log=$work/serve.log
-"$stipple" serve "$cloud" --port 0 --json --log >"$work/serve.json" 2>"$log" &
+"$stipple" serve "$cloud" --port 0 --json --log json >"$work/serve.json" 2>"$log" &
 server=$!
 trap 'kill $server 2>/dev/null || true' EXIT
 until [ -s "$work/serve.json" ]; do sleep 0.1; done
@@ -43,7 +43,7 @@ for budget in 1000 2000000; do
   : >"$log"
   "$stipple" render "$address" -o "$work/$name.$budget.png" --budget "$budget" --json |
     json '`budget '"$budget"': ${d.frame.pointsDrawn} points of ${d.frame.nodesDrawn} nodes`'
-  awk 'match($0, / bytes=[0-9]+/) { n++; b += substr($0, RSTART + 7, RLENGTH - 7) } END { print "  " n " requests, " b " bytes" }' "$log"
+  awk 'match($0, /"bytes":[0-9]+/) { n++; b += substr($0, RSTART + 8, RLENGTH - 8) } END { print "  " n " requests, " b " bytes" }' "$log"
 done
 
 echo "== both rasterizers, 1280x720, 2 M points"

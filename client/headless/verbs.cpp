@@ -18,6 +18,7 @@ void addExportVerb(CLI::App& program, cli::Action& action);
 #ifdef HAVE_stipple_server_verbs
 void addServeVerb(CLI::App& program, cli::Action& action);
 void addViewVerb(CLI::App& program, cli::Action& action);
+void addAccessVerb(CLI::App& program, cli::Action& action);
 #endif
 #ifdef HAVE_stipple_render_verbs
 void addRenderVerb(CLI::App& program, cli::Action& action);
@@ -46,7 +47,7 @@ std::vector<AddVerb> allVerbs() {
         addConvertVerb, addInfo,     addVerifyVerb, addExportVerb,
 #endif
 #ifdef HAVE_stipple_server_verbs
-        addServeVerb,   addViewVerb,
+        addServeVerb,   addViewVerb, addAccessVerb,
 #endif
 #ifdef HAVE_stipple_render_verbs
         addRenderVerb,

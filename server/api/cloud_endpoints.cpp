@@ -20,20 +20,8 @@ Answer answerJson(const ApiCall& call, std::string text) {
 
 } // namespace
 
-Answer answerClouds(const ApiCall& call) {
-    std::vector<NamedCloud> clouds;
-    for (const std::string& id : call.catalog.ids())
-        if (call.visitor.mayRead(id))
-            if (auto version = call.catalog.current(id))
-                clouds.emplace_back(id, *version); // one that can't be used now answers for itself when asked
-    Answer answer = answerJson(call, cloudListJson(clouds));
-    if (!call.visitor.seesAll())
-        std::get<HttpResponse>(answer).addToList("Vary", "Authorization");
-    return answer;
-}
-
 Answer answerCloud(const ApiCall& call) {
-    return answerJson(call, cloudJson({call.id, call.cloud}));
+    return answerJson(call, cloudJson(call.id, *call.cloud));
 }
 
 Answer answerProblemType(const ApiCall& call) {

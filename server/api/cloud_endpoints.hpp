@@ -1,11 +1,10 @@
-// The list of clouds, what a cloud says about itself, and what problem documents mean. Answered at once.
+// What a cloud says about itself, and what problem documents mean. Answered at once.
 #pragma once
 
 #include "server/api/endpoint.hpp"
 
 namespace stipple::server {
 
-Answer answerClouds(const ApiCall& call);      // /clouds
 Answer answerCloud(const ApiCall& call);       // /clouds/{id}
 Answer answerProblemType(const ApiCall& call); // /problems/{name}
 

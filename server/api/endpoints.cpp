@@ -1,5 +1,6 @@
 #include "server/api/api.hpp"
 #include "server/api/cloud_endpoints.hpp"
+#include "server/api/cloud_list_endpoint.hpp"
 #include "server/api/hierarchy_endpoint.hpp"
 #include "server/api/node_endpoint.hpp"
 
@@ -9,7 +10,7 @@ namespace stipple::server {
 
 std::span<const Endpoint> endpoints() {
     static constexpr std::array table{
-        Endpoint{"/clouds", answerClouds},
+        Endpoint{"/clouds", answerClouds, cloudListParameters},
         Endpoint{"/clouds/{id}", answerCloud},
         Endpoint{"/clouds/{id}/hierarchy/{key}", answerHierarchy, hierarchyParameters},
         Endpoint{"/clouds/{id}/nodes/{key}", answerNode, nodeParameters},

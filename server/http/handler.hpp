@@ -5,6 +5,7 @@
 #include "server/http/message.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace stipple::server {
 
@@ -18,6 +19,9 @@ class RequestHandler {
     // Gives a response that answer() has not seen (a job's, a refusal by the server itself) what every answer
     // to `request` carries. The request is empty where the client's bytes were none.
     virtual void complete(const HttpRequest& request, HttpResponse& response) const = 0;
+
+    // Who sent the request, for the log; empty: nobody in particular.
+    virtual std::string userOf(const HttpRequest&) const { return {}; }
 };
 
 } // namespace stipple::server

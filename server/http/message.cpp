@@ -44,6 +44,24 @@ std::optional<std::string> HttpRequest::field(std::string_view name) const {
     return value;
 }
 
+KeptRequest::KeptRequest(const HttpRequest& request) : request_(request) {
+    std::size_t size = request.method.size() + request.target.size();
+    for (const auto& [name, value] : request.fields)
+        size += name.size() + value.size();
+    text_.reserve(size); // it must not move
+    auto keep = [this](std::string_view& view) {
+        std::size_t at = text_.size();
+        text_ += view;
+        view = std::string_view(text_).substr(at, view.size());
+    };
+    keep(request_.method);
+    keep(request_.target);
+    for (auto& [name, value] : request_.fields) {
+        keep(name);
+        keep(value);
+    }
+}
+
 void HttpResponse::set(std::string_view name, std::string value) {
     for (auto& [fieldName, fieldValue] : fields)
         if (equalIgnoringCase(fieldName, name)) {

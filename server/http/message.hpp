@@ -30,6 +30,19 @@ struct HttpRequest {
     std::optional<std::string> field(std::string_view name) const;
 };
 
+// A copy of a request that outlives the connection's buffer, for jobs.
+class KeptRequest {
+  public:
+    explicit KeptRequest(const HttpRequest& request);
+    KeptRequest(const KeptRequest&) = delete;
+    KeptRequest& operator=(const KeptRequest&) = delete;
+    const HttpRequest& request() const { return request_; }
+
+  private:
+    std::string text_; // all that request_ has views of
+    HttpRequest request_;
+};
+
 // A piece of a file, kept open until it is sent. Invariant: offset + size <= file->identity().sizeBytes.
 struct FileSlice {
     std::shared_ptr<const OpenFile> file;

@@ -54,9 +54,11 @@ Result<std::string> decodeSegment(std::string_view text) {
 Result<std::string_view> originForm(std::string_view target) {
     if (target.starts_with('/'))
         return target;
-    if (target.size() >= 7 && equalIgnoringCase(target.substr(0, 7), "http://")) {
-        std::size_t path = target.find_first_of("/?", 7);
-        if (path == 7)
+    for (std::string_view scheme : {std::string_view("http://"), std::string_view("https://")}) {
+        if (!equalIgnoringCase(target.substr(0, scheme.size()), scheme))
+            continue;
+        std::size_t path = target.find_first_of("/?", scheme.size());
+        if (path == scheme.size() || target.size() == scheme.size())
             return refused("the address names no host");
         if (path == std::string_view::npos)
             return std::string_view("/");

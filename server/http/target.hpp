@@ -18,7 +18,7 @@ struct Target {
     std::string relativePath() const;
 };
 
-// Origin form ("/path?query") or absolute form ("http://host/path?query").
+// Origin form ("/path?query") or absolute form ("http://host/path?query", also of https).
 // Errors (invalidArgument): other forms, broken or cut percent-encoding, control bytes and NUL (plain or
 // encoded), encoded slashes, backslashes, "." and ".." segments (plain or encoded), empty inner segments.
 Result<Target> parseTarget(std::string_view target);

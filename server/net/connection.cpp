@@ -230,13 +230,16 @@ void Connection::log() const {
     record.client = client_;
     record.method = exchange_.request.method;
     record.target = exchange_.request.target;
+    record.version = exchange_.request.version;
+    record.user = state.handler->userOf(exchange_.request);
     record.range = exchange_.request.field("Range").value_or("");
+    record.referer = exchange_.request.field("Referer").value_or("");
+    record.userAgent = exchange_.request.field("User-Agent").value_or("");
     record.job = exchange_.job;
     record.status = exchange_.status;
     record.bodyBytes = exchange_.outcome.bodyBytes;
     record.milliseconds = duration<double, std::milli>(Clock::now() - exchange_.begin).count();
     record.isComplete = exchange_.outcome.isComplete;
-    std::lock_guard lock(state.logMutex);
     state.log(record);
 }
 

@@ -32,7 +32,6 @@ struct ServerState {
     }
     std::mutex tlsMutex;
     std::shared_ptr<const TlsContext> tlsContext;
-    std::mutex logMutex;
     std::atomic<int> openConnections{0};
     std::mutex drainedMutex;
     std::condition_variable drained; // notified when a connection ends

@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <unordered_set>
 
 namespace stipple::server {
 
 namespace {
 
 namespace fs = std::filesystem;
+using VersionPtr = std::shared_ptr<const CloudVersion>;
+constexpr const char* fileSuffix = ".stipple";
 constexpr const char* convertAdvice = "make one with `stipple convert SCAN -o NAME.stipple`";
 
 std::string idOf(const std::string& path) {
@@ -21,77 +24,191 @@ std::string idOf(const std::string& path) {
     return id;
 }
 
-Result<std::vector<std::string>> filesOf(const std::string& path) {
-    std::error_code problem;
-    if (!fs::is_directory(path, problem)) {
-        if (!fs::exists(path, problem))
-            return Error{ErrorCode::notFound, "there is no such file or folder", path, ""};
-        return std::vector<std::string>{path};
-    }
-    std::vector<std::string> files;
-    fs::directory_iterator at(path, problem), end;
-    for (; !problem && at != end; at.increment(problem))
-        if (at->path().extension() == ".stipple")
-            files.push_back(at->path().string());
-    if (problem)
-        return Error{ErrorCode::ioFailed, cat("the folder can't be read: ", problem.message()), path, ""};
-    std::sort(files.begin(), files.end());
-    return files;
+bool isOf(const VersionPtr& version, const FileIdentity& identity) {
+    return version && version->file && version->file->identity() == identity;
 }
 
 } // namespace
 
-Result<CloudCatalog::Opened> CloudCatalog::open(const std::vector<std::string>& paths) {
-    Opened opened{std::make_unique<CloudCatalog>(), {}};
-    for (const std::string& path : paths) {
-        STIPPLE_TRY(files, filesOf(path));
-        if (files.empty())
-            opened.warnings.push_back({ErrorCode::notFound, "the folder holds no .stipple file", path, ""});
-        for (const std::string& filePath : files) {
-            auto file = OpenFile::open(filePath);
-            auto version = file ? readCloud(*file, filePath) : file.error();
-            if (version)
-                opened.catalog->add(filePath, *version);
-            else
-                opened.warnings.push_back(version.error());
-        }
-    }
-    if (!opened.catalog->entries_.empty())
-        return opened;
-    Error nothing{ErrorCode::notFound, "there is no cloud to serve", "", convertAdvice};
-    if (opened.warnings.size() == 1) // the one reason says more
-        return opened.warnings.front();
-    return nothing;
+CloudSummary summaryOf(const CloudVersion& version) {
+    return {version.metadata.name, version.metadata.pointCount, version.metadata.worldBounds(),
+            version.sizeBytes(),   version.validators.etag,     version.version()};
 }
 
-void CloudCatalog::add(const std::string& path, std::shared_ptr<const CloudVersion> version) {
-    std::string stem = idOf(path), id = stem;
-    for (int next = 2; std::find(ids_.begin(), ids_.end(), id) != ids_.end(); ++next)
-        id = cat(stem, "-", next);
-    ids_.push_back(id);
-    auto entry = std::make_unique<Entry>();
-    entry->path = path;
-    entry->version = std::move(version);
-    entries_.push_back(std::move(entry));
+Result<CloudCatalog::Opened> CloudCatalog::open(const std::vector<std::string>& paths,
+                                                const VersionCache::Limits& limits) {
+    Opened opened{std::unique_ptr<CloudCatalog>(new CloudCatalog(limits)), {}};
+    CloudCatalog& catalog = *opened.catalog;
+    for (const std::string& path : paths) {
+        std::error_code problem;
+        if (!fs::exists(path, problem))
+            return Error{ErrorCode::notFound, "there is no such file or folder", path, ""};
+        if (fs::is_directory(path, problem)) {
+            catalog.folders_.push_back({FolderListing(path, fileSuffix), {}});
+            continue;
+        }
+        std::string id = catalog.add(path);
+        if (auto version = catalog.openFile(id, path); !version) {
+            opened.warnings.push_back(version.error());
+            catalog.remove(id);
+        }
+    }
+    catalog.refresh();
+    for (const Folder& folder : catalog.folders_)
+        if (!folder.listing.status())
+            return folder.listing.status().error();
+        else if (folder.listing.names().empty())
+            opened.warnings.push_back(
+                {ErrorCode::notFound, "the folder holds no .stipple file yet", folder.listing.path(), ""});
+    if (!catalog.entries_.empty() || !catalog.folders_.empty())
+        return opened;
+    if (opened.warnings.size() == 1) // the one reason says more
+        return opened.warnings.front();
+    return Error{ErrorCode::notFound, "there is no cloud to serve", "", convertAdvice};
+}
+
+std::vector<std::string> CloudCatalog::ids() const {
+    return idsAfter("", static_cast<std::size_t>(-1), [](const std::string&) { return true; });
+}
+
+std::vector<std::string> CloudCatalog::idsAfter(std::string_view after, std::size_t count,
+                                                const std::function<bool(const std::string&)>& wanted) const {
+    refresh();
+    std::vector<std::string> ids;
+    std::shared_lock lock(mutex_);
+    for (auto at = entries_.upper_bound(after); at != entries_.end() && ids.size() < count; ++at)
+        if (wanted(at->first))
+            ids.push_back(at->first);
+    return ids;
 }
 
 bool CloudCatalog::holds(std::string_view id) const {
-    return std::find(ids_.begin(), ids_.end(), id) != ids_.end();
+    return pathOf(std::string(id)).has_value();
 }
 
-Result<std::shared_ptr<const CloudVersion>> CloudCatalog::current(std::string_view id) const {
-    auto found = std::find(ids_.begin(), ids_.end(), id);
-    if (found == ids_.end())
-        return Error{ErrorCode::notFound, "there is no such cloud", std::string(id), ""};
-    Entry& entry = *entries_[static_cast<std::size_t>(found - ids_.begin())];
-    STIPPLE_TRY(identity, identityOf(entry.path));
-    std::lock_guard lock(entry.mutex);
-    if (entry.version->file->identity() == identity)
-        return entry.version;
-    STIPPLE_TRY(file, OpenFile::open(entry.path));
-    STIPPLE_TRY(version, readCloud(file, entry.path));
-    entry.version = version;
+Result<VersionPtr> CloudCatalog::current(std::string_view id) const {
+    std::string key(id);
+    auto path = pathOf(key);
+    if (!path)
+        return Error{ErrorCode::notFound, "there is no such cloud", key, ""};
+    auto identity = identityOf(*path);
+    if (!identity) {
+        versions_.drop(key);
+        refresh();
+        return identity.error();
+    }
+    if (auto version = versions_.find(key); isOf(version, *identity))
+        return version;
+    std::lock_guard lock(opening_[std::hash<std::string>{}(key) % opening_.size()]);
+    if (auto version = versions_.find(key); isOf(version, *identity)) // by another thread, meanwhile
+        return version;
+    versions_.drop(key);
+    return openFile(key, *path);
+}
+
+Result<VersionPtr> CloudCatalog::openFile(const std::string& id, const std::string& path) const {
+    auto file = OpenFile::open(path);
+    if (!file && file.error().code == ErrorCode::limitExceeded) { // of descriptors, these can be spared
+        versions_.shrinkTo(versions_.size() / 2);
+        file = OpenFile::open(path);
+    }
+    if (!file)
+        return file.error();
+    ++opened_;
+    STIPPLE_TRY(version, readCloud(*file, path));
+    versions_.keep(id, version);
+    std::lock_guard lock(summariesMutex_);
+    summaries_[id] = {(*file)->identity(), summaryOf(*version)};
     return version;
+}
+
+Result<CloudSummary> CloudCatalog::summary(const std::string& id) const {
+    if (auto known = knownSummary(id))
+        return *known;
+    STIPPLE_TRY(version, current(id));
+    return summaryOf(*version);
+}
+
+std::optional<CloudSummary> CloudCatalog::knownSummary(const std::string& id) const {
+    auto path = knownPathOf(id);
+    auto identity = path ? identityOf(*path) : Error{ErrorCode::notFound, "", "", ""};
+    if (!identity)
+        return std::nullopt;
+    std::lock_guard lock(summariesMutex_);
+    auto known = summaries_.find(id);
+    if (known == summaries_.end() || !(known->second.identity == *identity))
+        return std::nullopt;
+    return known->second.summary;
+}
+
+void CloudCatalog::reload() const {
+    {
+        std::lock_guard lock(foldersMutex_);
+        for (Folder& folder : folders_)
+            folder.listing.readAgain();
+    }
+    refresh();
+}
+
+CloudCatalog::Counts CloudCatalog::counts() const {
+    std::shared_lock lock(mutex_);
+    return {entries_.size(), versions_.size(), opened_};
+}
+
+std::optional<std::string> CloudCatalog::pathOf(const std::string& id) const {
+    auto path = knownPathOf(id);
+    if (path || folders_.empty())
+        return path;
+    refresh();
+    return knownPathOf(id);
+}
+
+std::optional<std::string> CloudCatalog::knownPathOf(const std::string& id) const {
+    std::shared_lock lock(mutex_);
+    auto found = entries_.find(id);
+    return found == entries_.end() ? std::nullopt : std::optional<std::string>(found->second.path);
+}
+
+void CloudCatalog::refresh() const {
+    std::lock_guard lock(foldersMutex_);
+    for (Folder& folder : folders_)
+        if (folder.listing.refresh())
+            takeOver(folder);
+}
+
+void CloudCatalog::takeOver(Folder& folder) const {
+    const auto& names = folder.listing.names();
+    std::unordered_set<std::string_view> present(names.begin(), names.end());
+    for (auto known = folder.ids.begin(); known != folder.ids.end();) {
+        if (present.contains(known->first)) {
+            ++known;
+            continue;
+        }
+        remove(known->second);
+        known = folder.ids.erase(known);
+    }
+    for (const std::string& name : names)
+        if (!folder.ids.contains(name))
+            folder.ids[name] = add((fs::path(folder.listing.path()) / name).string());
+}
+
+std::string CloudCatalog::add(const std::string& path) const {
+    std::unique_lock lock(mutex_);
+    std::string stem = idOf(path), id = stem;
+    for (int next = 2; entries_.contains(id); ++next)
+        id = cat(stem, "-", next);
+    entries_[id] = {path};
+    return id;
+}
+
+void CloudCatalog::remove(const std::string& id) const {
+    {
+        std::unique_lock lock(mutex_);
+        entries_.erase(id);
+    }
+    versions_.drop(id);
+    std::lock_guard lock(summariesMutex_);
+    summaries_.erase(id);
 }
 
 } // namespace stipple::server

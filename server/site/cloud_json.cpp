@@ -15,37 +15,38 @@ std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Json boundsJson(const CloudMetadata& metadata) {
-    BoxD box = metadata.worldBounds();
+Json boundsJson(const BoxD& box) {
     if (box.empty())
         return nullptr;
     return {{"min", {box.min.x, box.min.y, box.min.z}}, {"max", {box.max.x, box.max.y, box.max.z}}};
 }
 
-Json summary(const NamedCloud& cloud) {
-    const auto& [id, version] = cloud;
+Json summaryJson(const std::string& id, const CloudSummary& summary) {
     return {{"id", id},
-            {"name", version->metadata.name},
+            {"name", summary.name},
             {"address", cloudAddress(id)},
-            {"pointCount", version->metadata.pointCount},
-            {"bounds", boundsJson(version->metadata)},
-            {"sizeBytes", version->sizeBytes()},
-            {"etag", version->validators.etag},
-            {"version", version->version()}};
+            {"pointCount", summary.pointCount},
+            {"bounds", boundsJson(summary.bounds)},
+            {"sizeBytes", summary.sizeBytes},
+            {"etag", summary.etag},
+            {"version", summary.version}};
 }
 
 } // namespace
 
-std::string cloudListJson(const std::vector<NamedCloud>& clouds) {
-    Json list = Json::array();
-    for (const NamedCloud& cloud : clouds)
-        list.push_back(summary(cloud));
-    return dump({{"clouds", std::move(list)}});
+std::string cloudListJson(const CloudList& list) {
+    Json clouds = Json::array();
+    for (const auto& [id, summary] : list.clouds)
+        clouds.push_back(summaryJson(id, summary));
+    Json json{{"clouds", std::move(clouds)}};
+    if (!list.next.empty())
+        json["next"] = list.next;
+    return dump(json);
 }
 
-std::string cloudJson(const NamedCloud& cloud) {
-    Json json = summary(cloud);
-    json["metadata"] = Json::parse(cloud.second->metadataText, nullptr, false);
+std::string cloudJson(const std::string& id, const CloudVersion& version) {
+    Json json = summaryJson(id, summaryOf(version));
+    json["metadata"] = Json::parse(version.metadataText, nullptr, false);
     return dump(json);
 }
 

@@ -9,13 +9,16 @@
 
 namespace stipple::server {
 
-using NamedCloud = std::pair<std::string, std::shared_ptr<const CloudVersion>>; // id, version
+struct CloudList {
+    std::vector<std::pair<std::string, CloudSummary>> clouds; // id, what is said of it
+    std::string next;                                         // address of what follows; empty: nothing does
+};
 
 // {"clouds": [{"id", "name", "address", "pointCount", "bounds": {"min": [x, y, z], "max": […]} or null,
-//              "sizeBytes", "etag", "version"}]}
-std::string cloudListJson(const std::vector<NamedCloud>& clouds);
+//              "sizeBytes", "etag", "version"}], "next": address or absent}
+std::string cloudListJson(const CloudList& list);
 
 // What the list says of a cloud, and "metadata": the file's own metadata document (docs/FORMAT.md).
-std::string cloudJson(const NamedCloud& cloud);
+std::string cloudJson(const std::string& id, const CloudVersion& version);
 
 } // namespace stipple::server

@@ -56,6 +56,15 @@ void Site::complete(const HttpRequest& request, HttpResponse& response) const {
         response.sendsBody = false;
 }
 
+std::string Site::userOf(const HttpRequest& request) const {
+    auto rules = this->rules();
+    if (!rules || request.count("Authorization") == 0)
+        return {};
+    constexpr std::int64_t beforeAnyExpiry =
+        0; // whose token it was is worth knowing when it has expired, too
+    return Visitor(std::move(rules), request, "", beforeAnyExpiry).name();
+}
+
 // Whether the response says nothing that needs credentials. It must not depend on whether a cloud exists or
 // is private where the client may not know that: what is refused before the clouds are looked at is for all,
 // what is refused for lack of rights never is.

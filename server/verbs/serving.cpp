@@ -25,7 +25,7 @@ void raiseDescriptorLimit() {
 }
 
 void printAddress(const Server& server, const Site& site, bool asJson) {
-    const auto& ids = site.catalog().ids();
+    const std::vector<std::string> ids = site.catalog().ids();
     if (asJson) {
         nlohmann::ordered_json clouds = nlohmann::ordered_json::array();
         for (const std::string& id : ids)
@@ -41,8 +41,11 @@ void printAddress(const Server& server, const Site& site, bool asJson) {
 }
 
 // What SIGHUP asks for. What can't be read is said, and the old one stays in use.
-void reload(const char* verb, Server& server) {
-    for (const Status& status : {server.reloadCertificate()})
+void reload(const char* verb, Server& server, const Site& site, AccessLog* log) {
+    site.catalog().reload();
+    AccessControl* access = site.access();
+    for (const Status& status : {server.reloadCertificate(), access != nullptr ? access->reload() : Status(),
+                                 log != nullptr ? log->reopen() : Status()})
         if (!status)
             std::fprintf(stderr, "stipple %s: not reloaded: %s\n", verb, status.error().sentence().c_str());
 }
@@ -51,9 +54,8 @@ void reload(const char* verb, Server& server) {
 
 void addServingOptions(CLI::App& verb, ServingOptions& options) {
     addNetOptions(verb, options.server);
-    verb.add_option("--page", options.pageFolder, "Folder of the built page");
+    addSiteOptions(verb, options.site);
     verb.add_flag("--json", options.asJson, "Print the address and the clouds as one line of JSON");
-    verb.add_flag("--log", options.logsRequests, "Print a line for each request to standard error");
     verb.add_option("--grace", options.graceSeconds, "Seconds that downloads may go on after Ctrl-C")
         ->check(CLI::Range(0, 86400))
         ->capture_default_str();
@@ -67,24 +69,32 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
     if (!opened)
         return cli::fail(verb, opened.error());
     for (const Error& warning : opened->warnings)
-        std::fprintf(stderr, "stipple %s: left out: %s\n", verb, warning.sentence().c_str());
-    auto page = openPageFolder(options.pageFolder);
+        std::fprintf(stderr, "stipple %s: warning: %s\n", verb, warning.sentence().c_str());
+    auto page = openPageFolder(options.site.pageFolder);
     if (!page)
         return cli::fail(verb, page.error());
-    auto site = std::make_shared<const Site>(std::move(opened->catalog), Page(std::move(*page)));
+    auto chosen = siteOptions(options.site);
+    if (!chosen)
+        return cli::fail(verb, chosen.error());
+    auto site =
+        std::make_shared<const Site>(std::move(opened->catalog), Page(std::move(*page)), std::move(*chosen));
+    auto accessLog = openLog(options.site);
+    if (!accessLog)
+        return cli::fail(verb, accessLog.error());
 
-    RequestLog log;
-    if (options.logsRequests)
-        log = [](const RequestRecord& record) { std::fprintf(stderr, "%s\n", formatRecord(record).c_str()); };
+    AccessLog* log = accessLog->get();
+    RequestLog logRequest;
+    if (log != nullptr)
+        logRequest = [log](const RequestRecord& record) { log->write(record); };
     ServerSignals signals;
-    auto server = Server::start(options.server, site, log);
+    auto server = Server::start(options.server, site, logRequest);
     if (!server)
         return cli::fail(verb, server.error());
     printAddress(**server, *site, options.asJson);
     onReady((*server)->address());
     std::function<void()> onHangUp;
     if (options.reloadsOnHangUp)
-        onHangUp = [&] { reload(verb, **server); };
+        onHangUp = [&] { reload(verb, **server, *site, log); };
     signals.runUntilSignalled(**server, std::chrono::seconds(options.graceSeconds), onHangUp);
     return cli::success;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/net/server.hpp"
+#include "server/verbs/site_options.hpp"
 #include "shared/base/result.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -13,10 +14,9 @@
 namespace stipple::server {
 
 struct ServingOptions {
-    ServerOptions server;   // its port is 8017 unless chosen otherwise
-    std::string pageFolder; // empty: the built page beside the program or in the source tree
+    ServerOptions server; // its port is 8017 unless chosen otherwise
+    ChosenSite site;
     bool asJson = false;
-    bool logsRequests = false;
     int graceSeconds = 10;
     bool reloadsOnHangUp =
         false; // SIGHUP, as services have it; otherwise it ends, as a closed terminal should

@@ -3,7 +3,10 @@
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -217,4 +220,53 @@ TEST_CASE("no path leads out of the page folder, or to a hidden file") {
     }
     CHECK(wrong == 0);
     CHECK(targets.size() > 5000);
+}
+
+TEST_CASE("a long list of clouds comes in pages, each once, in order") {
+    TestServer server(TestServer::quickLimits(), [](TestFolder& folder) {
+        for (int i = 100; i < 350; ++i)
+            std::filesystem::create_hard_link(folder.cloud(),
+                                              folder.clouds() / (std::to_string(i) + ".stipple"));
+        std::ofstream(folder.clouds() / "111-broken.stipple") << "nonsense";
+        return server::SiteOptions();
+    });
+    for (int round = 0; round < 2; ++round) { // opened by jobs, then known
+        std::vector<std::string> ids;
+        std::string next = "/api/v1/clouds?limit=70";
+        for (int page = 0; !next.empty(); ++page) {
+            REQUIRE(page < 5);
+            auto response = askOnce(server.port(), "GET " + next + " HTTP/1.1\nHost: a");
+            REQUIRE(response.status == 200);
+            auto json = nlohmann::json::parse(response.body, nullptr, false);
+            for (const auto& cloud : json["clouds"])
+                ids.push_back(cloud["id"]);
+            next = json.value("next", "");
+            CHECK(response.field("link") == (next.empty() ? "" : "<" + next + ">; rel=\"next\""));
+        }
+        CHECK(ids.size() == 251);
+        CHECK(std::is_sorted(ids.begin(), ids.end()));
+        CHECK(ids.back() == "town");
+    }
+    auto usual = nlohmann::json::parse(askOnce(server.port(), "GET /api/v1/clouds HTTP/1.1\nHost: a").body,
+                                       nullptr, false);
+    CHECK(usual["clouds"].size() == 99); // 100 but for the broken one
+    auto asked = [&](const std::string& query) {
+        return askOnce(server.port(), "GET /api/v1/clouds?" + query + " HTTP/1.1\nHost: a").status;
+    };
+    CHECK(asked("limit=1000&after=349") == 200);
+    CHECK(asked("limit=0") == 400);
+    CHECK(asked("limit=1001") == 400);
+    CHECK(asked("limit=x") == 400);
+    CHECK(asked("offset=3") == 400);
+}
+
+TEST_CASE("a list that jobs make heeds conditions") {
+    TestServer server;
+    auto list = askOnce(server.port(), "GET /api/v1/clouds HTTP/1.1\nHost: a");
+    TestServer same; // nothing is known there yet
+    auto again = askOnce(same.port(), "GET /api/v1/clouds HTTP/1.1\nHost: a\nIf-None-Match: *");
+    CHECK(list.status == 200);
+    CHECK(again.status == 304);
+    CHECK(askOnce(server.port(), "GET /api/v1/clouds HTTP/1.1\nHost: a\nIf-None-Match: " + list.field("etag"))
+              .status == 304);
 }

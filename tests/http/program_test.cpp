@@ -1,4 +1,5 @@
 // `stipple serve` as a program: its line, its log, its errors, its end, and its life without descriptors.
+#include "tests/http/support/program.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_certificate.hpp"
 #include "tests/http/support/test_server.hpp"
@@ -19,77 +20,12 @@ using namespace stipple;
 using namespace stipple::test;
 namespace fs = std::filesystem;
 
-namespace {
-
-class Program {
-  public:
-    // `descriptors`: its limit; 0: as it is.
-    Program(std::vector<std::string> arguments, fs::path errors, rlim_t descriptors = 0) {
-        int ends[2];
-        REQUIRE(::pipe(ends) == 0);
-        child_ = ::fork();
-        if (child_ == 0) {
-            ::dup2(ends[1], 1);
-            if (std::freopen(errors.c_str(), "w", stderr) == nullptr)
-                ::_exit(99);
-            ::close(ends[0]);
-            if (descriptors > 0) {
-                struct rlimit limit {
-                    descriptors, descriptors
-                };
-                ::setrlimit(RLIMIT_NOFILE, &limit);
-            }
-            arguments.insert(arguments.begin(), STIPPLE_PROGRAM);
-            std::vector<char*> raw;
-            for (std::string& argument : arguments)
-                raw.push_back(argument.data());
-            raw.push_back(nullptr);
-            ::execv(raw[0], raw.data());
-            ::_exit(99);
-        }
-        ::close(ends[1]);
-        output_ = ::fdopen(ends[0], "r");
-    }
-    ~Program() {
-        if (child_ > 0) {
-            ::kill(child_, SIGKILL);
-            wait();
-        }
-        std::fclose(output_);
-    }
-    std::string line() {
-        std::string text;
-        for (int c; (c = std::fgetc(output_)) != EOF && c != '\n';)
-            text += static_cast<char>(c);
-        return text;
-    }
-    void signal(int number) const { ::kill(child_, number); }
-    int wait() { // exit code; 1000 + signal
-        int status = 0;
-        ::waitpid(child_, &status, 0);
-        child_ = 0;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-    }
-
-  private:
-    pid_t child_ = 0;
-    std::FILE* output_ = nullptr;
-};
-
-std::uint16_t portOf(const std::string& jsonLine) {
-    auto json = nlohmann::json::parse(jsonLine, nullptr, false);
-    REQUIRE(json.is_object());
-    return json["port"].get<std::uint16_t>();
-}
-
-} // namespace
-
 TEST_CASE("serve prints one line, logs each request, and ends with success on a signal") {
     TestFolder folder;
     fs::path errors = folder.path() / "errors.txt";
-    std::ofstream(folder.path() / "clouds" / "broken.stipple") << "nonsense";
-    Program program({"serve", (folder.path() / "clouds").string(), "--port", "0", "--json", "--log", "--page",
-                     folder.page().string()},
+    std::ofstream(folder.path() / "broken.stipple") << "nonsense";
+    Program program({"serve", folder.clouds().string(), (folder.path() / "broken.stipple").string(), "--port",
+                     "0", "--json", "--log", "json", "--page", folder.page().string()},
                     errors);
     auto json = nlohmann::json::parse(program.line(), nullptr, false);
     REQUIRE(json.is_object());
@@ -101,10 +37,11 @@ TEST_CASE("serve prints one line, logs each request, and ends with success on a 
     program.signal(SIGTERM);
     CHECK(program.wait() == 0);
     std::string text = readFile(errors);
-    CHECK(text.find("left out: ") != std::string::npos);
+    CHECK(text.find("warning: ") != std::string::npos);
     CHECK(text.find("broken.stipple") != std::string::npos);
-    CHECK(text.find(" 127.0.0.1 GET /clouds/town.stipple range=\"bytes=0-99\" status=206 bytes=100 ms=") !=
+    CHECK(text.find(R"("target":"/clouds/town.stipple","version":"1.1","range":"bytes=0-99")") !=
           std::string::npos);
+    CHECK(text.find(R"("status":206,"bytes":100,)") != std::string::npos);
 }
 
 TEST_CASE("a second signal does not wait for the client that is still reading") {
@@ -132,7 +69,6 @@ TEST_CASE("serve refuses what it can't serve, with a sentence and a code") {
     CHECK(readFile(errors) == "stipple serve: /nonexistent: there is no such file or folder\n");
     CHECK(Program({"serve", (folder.path() / "broken.stipple").string()}, errors).wait() == 3);
     CHECK(readFile(errors).find("broken.stipple") != std::string::npos);
-    CHECK(Program({"serve", folder.page().string()}, errors).wait() == 3);
     CHECK(Program({"serve", folder.cloud().string(), "--page", "/nonexistent"}, errors).wait() == 3);
     CHECK(Program({"serve"}, errors).wait() == 2);
     CHECK(Program({"serve", folder.cloud().string(), "--port", "70000"}, errors).wait() == 2);

@@ -2,7 +2,7 @@ import { html, render } from 'lit';
 
 import { followDrops, followInput } from './input.ts';
 import { Model, messageOf } from './model.ts';
-import { listClouds, type ListedCloud } from './server_clouds.ts';
+import { listClouds, type CloudPage } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
 import type { App } from './ui/app.ts';
 import './ui/app.ts';
@@ -31,7 +31,7 @@ async function start(): Promise<void> {
 }
 
 /** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
-async function openClouds(model: Model, list: Promise<ListedCloud[]>): Promise<void> {
+async function openClouds(model: Model, list: Promise<CloudPage>): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('cloud');
     named.forEach((address) => model.openAddress(address));
     await model.takeList(list);

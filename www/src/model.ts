@@ -1,4 +1,4 @@
-import type { ListedCloud } from './server_clouds.ts';
+import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
 import type { CloudState, Counters, Limits, NamedView, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
@@ -11,6 +11,8 @@ const retryPauseMs = 200;
  */
 export class Model extends EventTarget {
     listed: ListedCloud[] = [];
+    /** Where the server's list goes on. */
+    nextOfList: string | undefined;
     listError = '';
     clouds: CloudState[] = [];
     style!: Style;
@@ -43,13 +45,22 @@ export class Model extends EventTarget {
     // Clouds
 
     /** What the server has; a plain file host has no list, which is no error. */
-    async takeList(list: Promise<ListedCloud[]>): Promise<void> {
+    async takeList(list: Promise<CloudPage>): Promise<void> {
         try {
-            this.listed = await list;
+            const { clouds, next } = await list;
+            this.listed = [...this.listed, ...clouds];
+            this.nextOfList = next;
         } catch (error) {
             this.listError = messageOf(error);
         }
         this.changed();
+    }
+
+    /** The next page of the server's list. */
+    async listMore(): Promise<void> {
+        const next = this.nextOfList;
+        this.nextOfList = undefined;
+        if (next !== undefined) await this.takeList(listClouds(next));
     }
 
     isOpen(address: string): boolean {

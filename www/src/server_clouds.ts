@@ -7,11 +7,18 @@ export interface ListedCloud {
     pointCount: number;
 }
 
-/** What the server that delivered this page has; empty where it is a plain file host. */
-export async function listClouds(): Promise<ListedCloud[]> {
-    const response = await fetch(new URL('api/v1/clouds', document.baseURI), { cache: 'no-store' });
-    if (response.status === 404) return [];
+/** Some of the clouds, and where the list goes on. */
+export interface CloudPage {
+    clouds: ListedCloud[];
+    /** Address; absent: these are the last. */
+    next?: string;
+}
+
+/** What the server that delivered this page has; nothing where it is a plain file host. `next` of the page before. */
+export async function listClouds(next = 'api/v1/clouds'): Promise<CloudPage> {
+    const response = await fetch(new URL(next, document.baseURI), { cache: 'no-store' });
+    if (response.status === 404) return { clouds: [] };
     if (!response.ok) throw new Error(`The server's list of clouds can't be had: status ${response.status}.`);
-    if (!response.headers.get('content-type')?.includes('json')) return [];
-    return ((await response.json()) as { clouds: ListedCloud[] }).clouds;
+    if (!response.headers.get('content-type')?.includes('json')) return { clouds: [] };
+    return (await response.json()) as CloudPage;
 }

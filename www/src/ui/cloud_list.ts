@@ -89,6 +89,9 @@ export class CloudList extends ModelElement {
                         </button>`,
                 )}
             </ul>
+            ${this.model.nextOfList === undefined
+                ? ''
+                : html`<button class="open" @click=${() => this.model.listMore()}>More clouds…</button>`}
             ${clouds.length + offers.length === 0
                 ? html`<p>${this.model.listError || 'Open a .stipple file, or drop one anywhere on the page.'}</p>`
                 : ''}
