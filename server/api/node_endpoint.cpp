@@ -1,5 +1,6 @@
 #include "server/api/node_endpoint.hpp"
 
+#include "server/api/node_points.hpp"
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
 
@@ -9,6 +10,7 @@ namespace {
 
 // A request made up, ready to be answered by any thread once the node's entry is known.
 struct NodeAnswer {
+    std::string id;
     std::shared_ptr<const CloudVersion> cloud;
     NodeKey key;
     NodePart part;
@@ -17,14 +19,16 @@ struct NodeAnswer {
 
     HttpResponse head() const {
         HttpResponse response;
-        response.set("Content-Type", std::string(format->mediaType));
+        response.set("Content-Type", contentTypeOf(*format));
+        if (exportFormatOf(*format))
+            response.set("Content-Disposition", contentDisposition(cat(id, "-", key.text()), *format));
         validity.setFields(response);
         return response;
     }
 };
 
 bool isStored(const NodeAnswer& answer) {
-    return answer.format->name == "stored";
+    return answer.format->name == storedFormat.name;
 }
 
 // Sent from the file, no byte of it read here.
@@ -46,11 +50,21 @@ Status storedFromSource(const NodeAnswer& answer, const NodeEntry& entry, ByteSo
     return {};
 }
 
+Status decoded(const NodeAnswer& answer, const NodeEntry& entry, ByteSource& source, AnswerWriter& writer) {
+    STIPPLE_TRY(text, nodeFile({*answer.format, answer.id}, *answer.cloud, entry, answer.part, source));
+    HttpResponse response = answer.head();
+    response.body.push_back(std::move(text));
+    writer.answer(std::move(response));
+    return {};
+}
+
 Status answerEntry(const NodeAnswer& answer, const NodeEntry& entry, ByteSource& source,
                    AnswerWriter& writer) {
     if (answer.validity.conditional)
         writer.answer(*answer.validity.conditional);
-    else if (isStored(answer) && answer.cloud->file)
+    else if (!isStored(answer))
+        return decoded(answer, entry, source, writer);
+    else if (answer.cloud->file)
         writer.answer(storedFromFile(answer, entry));
     else
         return storedFromSource(answer, entry, source, writer);
@@ -73,7 +87,8 @@ Answer answerNode(const ApiCall& call) {
     auto [format, variesByAccept] = std::get<ChosenFormat>(chosen);
 
     std::string variant = cat("node ", key->text(), " ", format->name, " ", part->text());
-    NodeAnswer answer{call.cloud, *key, std::move(*part), format, validityOf(call, variant, variesByAccept)};
+    NodeAnswer answer{call.id,          call.cloud, *key,
+                      std::move(*part), format,     validityOf(call, variant, variesByAccept)};
     HierarchyCache& hierarchy = call.resources.hierarchy;
     HierarchyCache::Known known = hierarchy.lookUp(*call.cloud, *key);
     if (std::holds_alternative<HierarchyCache::Absent>(known))

@@ -5,20 +5,21 @@
 
 #include "server/api/endpoint.hpp"
 #include "server/api/node_request.hpp"
+#include "server/api/point_formats.hpp"
 #include "server/api/validity.hpp"
-#include "server/http/negotiation.hpp"
 
 #include <array>
 
 namespace stipple::server {
 
-inline constexpr std::array nodeFormats{
-    Format{"stored", "application/octet-stream", "bin"},
-    Format{"json", "application/json", "json"},
-};
+inline constexpr Format storedFormat{"stored", "application/octet-stream", "bin"};
+inline constexpr std::array nodeFormats{storedFormat, jsonFormat, csvFormat, lasFormat, lazFormat, plyFormat};
+inline constexpr auto nodeFormatNames = namesOf(nodeFormats);
 inline constexpr Parameter nodeFormatParameter{
     .name = "format",
-    .description = "Goes before the field Accept.",
+    .description = "The format of the answer; goes before the field Accept.",
+    .kind = ParameterKind::choice,
+    .choices = nodeFormatNames,
     .example = "json",
 };
 inline constexpr std::array nodeParameters{strataParameter, attributesParameter, nodeFormatParameter,

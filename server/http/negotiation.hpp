@@ -3,6 +3,7 @@
 
 #include "server/http/message.hpp"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -15,6 +16,14 @@ struct Format {
     std::string_view mediaType; // lower case, without parameters: "text/csv"
     std::string_view extension; // of files that hold it: "csv"
 };
+
+template <std::size_t N>
+constexpr std::array<std::string_view, N> namesOf(const std::array<Format, N>& formats) {
+    std::array<std::string_view, N> names;
+    for (std::size_t i = 0; i < N; ++i)
+        names[i] = formats[i].name;
+    return names;
+}
 
 // Index of the offer that the value of Accept wants most: of the offers with the highest quality the first.
 // For each offer its most specific media range counts; a quality of 0 refuses it. Parameters other than q

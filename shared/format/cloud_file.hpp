@@ -74,10 +74,11 @@ struct NodeBytes {
     NodeEntry entry;
     std::vector<int> attributes; // indices into metadata.schema.attributes, as asked
     Bytes bytes;                 // of the blocks, in file order, without what lies between them
+    int strata = strataCount;    // 1..4: how many of them `bytes` begins with
 };
 // Which blocks those are: indices into attributeBlocks(metadata), ascending.
 std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<const int> attributes);
-// All points of the node in progressive order, grid integers and one column per attribute asked for
+// The points of the node's strata in progressive order, grid integers and one column per attribute asked for
 // (batch.columns[i] is NodeBytes::attributes[i]). Pure: any thread. Errors name the node.
 Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node);
 

@@ -93,7 +93,7 @@ class Reader final : public CloudReader {
     }
 
     Result<NodeBytes> fetchNode(const NodeEntry& entry, std::span<const int> attributes) override {
-        NodeBytes node{entry, {attributes.begin(), attributes.end()}, {}};
+        NodeBytes node{entry, {attributes.begin(), attributes.end()}, {}, strataCount};
         std::vector<ByteRange> ranges{entry.strataRange(strataCount)};
         for (std::size_t block : blocksHolding(metadata_, attributes)) {
             if (block >= entry.attributeBytes.size())
@@ -186,7 +186,7 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
         return ByteSpan(node.bytes).subspan(at - take, take);
     };
     STIPPLE_TRY(picture,
-                decodePicture(metadata, entry, strataCount, next(entry.strataRange(strataCount).size)));
+                decodePicture(metadata, entry, node.strata, next(entry.strataRange(node.strata).size)));
     PointBatch points;
     Vec3i corner = entry.pointCount > 0 ? metadata.rootCube.nodeMin(entry.key) : Vec3i{};
     points.positions.reserve(picture.size());
@@ -202,6 +202,9 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
         }
         STIPPLE_TRY(columns, decodeAttributes(metadata, entry, block, next(size)));
         for (std::size_t i = 0; i < columns.size(); ++i) {
+            auto attribute = static_cast<std::size_t>(blocks[block].attributes[i]);
+            // A block is of all points of the node, in the same order.
+            columns[i].resize(picture.size() * metadata.schema.attributes[attribute].size());
             std::vector<std::size_t> places = placesOf(node.attributes, blocks[block].attributes[i]);
             for (std::size_t p = 0; p < places.size(); ++p)
                 points.columns[places[p]] = p + 1 < places.size() ? columns[i] : std::move(columns[i]);
