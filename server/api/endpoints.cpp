@@ -1,4 +1,5 @@
 #include "server/api/api.hpp"
+#include "server/api/batch_endpoint.hpp"
 #include "server/api/cloud_endpoints.hpp"
 #include "server/api/cloud_list_endpoint.hpp"
 #include "server/api/hierarchy_endpoint.hpp"
@@ -13,6 +14,7 @@ std::span<const Endpoint> endpoints() {
         Endpoint{"/clouds", answerClouds, cloudListParameters},
         Endpoint{"/clouds/{id}", answerCloud},
         Endpoint{"/clouds/{id}/hierarchy/{key}", answerHierarchy, hierarchyParameters},
+        Endpoint{"/clouds/{id}/nodes", answerBatch, batchParameters},
         Endpoint{"/clouds/{id}/nodes/{key}", answerNode, nodeParameters},
         Endpoint{"/problems/{name}", answerProblemType},
     };
