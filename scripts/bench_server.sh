@@ -75,7 +75,7 @@ done = function(summary, latency)
 end
 END
 
-"$stipple" serve "$large" --port 0 --json "${serve_options[@]}" >"$work/serve.json" &
+"$stipple" serve "$large" --port 0 --json --connections-per-client 4096 "${serve_options[@]}" >"$work/serve.json" &
 ours=$!
 nginx -c "$work/nginx.conf" -p "$work" &
 theirs=$!

@@ -1,6 +1,7 @@
 #include "server/net/connection.hpp"
 
 #include "server/http/problem.hpp"
+#include "server/net/client_address.hpp"
 #include "server/net/job_answer.hpp"
 
 #include <algorithm>
@@ -14,7 +15,6 @@ namespace {
 
 constexpr std::chrono::milliseconds lingerTime{1000};
 constexpr std::chrono::hours untilTheJobSays{24 * 365}; // it has limits of its own
-constexpr std::size_t progressBytes = 256 * 1024;       // for each of which ServerLimits::noProgress holds
 constexpr std::size_t firstReadBytes = 2048;            // most requests are shorter
 // A client that pipelines must not keep the other connections of its loop waiting.
 constexpr int answersInTurn = 16;
@@ -26,7 +26,7 @@ constexpr int plainToTls = 1; // no status, but a 400 of its own
 
 Connection::Connection(Loop& loop, Socket socket, std::shared_ptr<const TlsContext> tls)
     : loop_(loop), limits_(loop.state().limits), stream_(std::move(socket), std::move(tls)),
-      client_(stream_.clientAddress()) {
+      peer_(stream_.peer()) {
     allow(limits_.header);
 }
 
@@ -87,6 +87,7 @@ Task<bool> Connection::readMore() {
         if (in.bytes.size() != firstReadBytes)
             in.bytes = std::vector<char>(firstReadBytes);
         phase_ = Phase::idle;
+        idleSince_ = deadline_ - limits_.idle;
     } else if (in.end == in.bytes.size()) {
         std::memmove(in.bytes.data(), in.bytes.data() + in.begin, in.end - in.begin);
         in.end -= in.begin;
@@ -146,7 +147,7 @@ HttpResponse Connection::unreadable(int status) const {
 bool Connection::startSending() {
     const auto& response = std::get<HttpResponse>(answer_);
     exchange_.status = response.status;
-    exchange_.keepsAlive = exchange_.keepsAlive && !response.closes && !loop_.isStopping();
+    exchange_.keepsAlive = exchange_.keepsAlive && !response.closes && !loop_.state().isEnding;
     head_.clear();
     appendResponseHead(head_, response, std::time(nullptr), exchange_.keepsAlive, BodyFraming::length);
     sender_.emplace(stream_, loop_.buffers(), head_, response);
@@ -159,7 +160,7 @@ bool Connection::startSending() {
 Task<void> Connection::finishSending() {
     auto step = ResponseSender::Step::pause;
     for (std::uint64_t renewedAt = 0; step != ResponseSender::Step::done; step = sender_->step()) {
-        if (sender_->outcome().bodyBytes - renewedAt >= progressBytes) {
+        if (sender_->outcome().bodyBytes - renewedAt >= ServerLimits::progressBytes) {
             renewedAt = sender_->outcome().bodyBytes;
             allow(limits_.noProgress);
         }
@@ -180,7 +181,7 @@ Task<void> Connection::answerJob(Job job) {
     exchange_.job = job.kind;
     bool headOnly = exchange_.request.method == "HEAD";
     allow(untilTheJobSays);
-    JobAnswer jobAnswer(loop_, stream_, client_, std::move(job), headOnly);
+    JobAnswer jobAnswer(loop_, stream_, clientGroup(client()), std::move(job), headOnly);
     std::optional<HttpResponse> response = co_await jobAnswer.wait();
     if (!response)
         co_return;
@@ -196,7 +197,7 @@ Task<void> Connection::answerJob(Job job) {
     exchange_.status = head.status;
     BodyFraming framing = exchange_.request.version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
     exchange_.keepsAlive =
-        exchange_.keepsAlive && framing == BodyFraming::chunked && !head.closes && !loop_.isStopping();
+        exchange_.keepsAlive && framing == BodyFraming::chunked && !head.closes && !loop_.state().isEnding;
     head_.clear();
     appendResponseHead(head_, head, std::time(nullptr), exchange_.keepsAlive, framing);
     if (headOnly)
@@ -220,6 +221,14 @@ bool Connection::endExchange() {
     return exchange_.keepsAlive;
 }
 
+// The peer, or whom a trusted proxy names.
+net::ip::address Connection::client() const {
+    const auto& trusted = loop_.state().trustedProxies;
+    if (trusted.empty() || std::find(trusted.begin(), trusted.end(), peer_) == trusted.end())
+        return peer_;
+    return forwardedClient(exchange_.request.field("X-Forwarded-For").value_or(""), peer_, trusted);
+}
+
 void Connection::log() const {
     ServerState& state = loop_.state();
     if (!state.log)
@@ -227,7 +236,7 @@ void Connection::log() const {
     using namespace std::chrono;
     RequestRecord record;
     record.timeMs = duration_cast<milliseconds>(system_clock::now().time_since_epoch()).count();
-    record.client = client_;
+    record.client = client().to_string();
     record.method = exchange_.request.method;
     record.target = exchange_.request.target;
     record.version = exchange_.request.version;

@@ -25,6 +25,7 @@ class Connection {
 
     void close(); // what is pending fails, and run() ends; what is being answered is broken off
     bool isIdle() const { return phase_ == Phase::idle; }
+    bool isIdleSince(Clock::time_point before) const { return isIdle() && idleSince_ <= before; }
     bool isLate(Clock::time_point now) const { return now >= deadline_; }
 
   private:
@@ -60,6 +61,7 @@ class Connection {
     bool endExchange(); // true: the connection goes on
     Task<void> closeGently();
     HttpResponse unreadable(int status) const;
+    net::ip::address client() const;
     void log() const;
     void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
 
@@ -72,9 +74,9 @@ class Connection {
     Answer answer_;
     std::string head_;
     std::optional<ResponseSender> sender_; // of head_ and answer_
-    std::string client_;
+    net::ip::address peer_;
     Phase phase_ = Phase::header;
-    Clock::time_point deadline_;
+    Clock::time_point deadline_, idleSince_;
     int answeredInTurn_ = 0; // without having waited for anything
 };
 

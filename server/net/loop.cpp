@@ -15,22 +15,23 @@ Loop::Loop(ServerState& state) : state_(state), work_(context_.get_executor()), 
 
 Loop::~Loop() = default;
 
-void Loop::adopt(Socket socket) {
+void Loop::adopt(Socket socket, std::string countedFor) {
     auto connection = std::make_unique<Connection>(*this, std::move(socket), state_.tls());
     connections_.insert(connection.get());
-    net::co_spawn(context_, serve(std::move(connection)), net::detached);
+    net::co_spawn(context_, serve(std::move(connection), std::move(countedFor)), net::detached);
 }
 
-Task<void> Loop::serve(std::unique_ptr<Connection> connection) {
+Task<void> Loop::serve(std::unique_ptr<Connection> connection, std::string countedFor) {
     co_await connection->run();
-    release(*connection);
+    connections_.erase(connection.get());
+    connection.reset(); // its descriptor is free before another client is let in
+    state_.connections.remove(countedFor);
 }
 
-void Loop::release(Connection& connection) {
-    connections_.erase(&connection);
-    --state_.openConnections;
-    std::lock_guard lock(state_.drainedMutex);
-    state_.drained.notify_all();
+void Loop::closeIdle(std::chrono::milliseconds atLeast) {
+    net::post(context_, [this, before = Connection::Clock::now() - atLeast] {
+        closeEach([before](const Connection& connection) { return connection.isIdleSince(before); });
+    });
 }
 
 void Loop::stop() {

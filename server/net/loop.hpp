@@ -3,12 +3,12 @@
 #pragma once
 
 #include "server/net/asio.hpp"
+#include "server/net/connection_count.hpp"
 #include "server/net/response_sender.hpp"
 #include "server/net/server.hpp"
 
 #include <atomic>
 #include <boost/asio/executor_work_guard.hpp>
-#include <condition_variable>
 #include <functional>
 #include <mutex>
 #include <set>
@@ -32,9 +32,9 @@ struct ServerState {
     }
     std::mutex tlsMutex;
     std::shared_ptr<const TlsContext> tlsContext;
-    std::atomic<int> openConnections{0};
-    std::mutex drainedMutex;
-    std::condition_variable drained; // notified when a connection ends
+    ConnectionCount connections;
+    std::vector<net::ip::address> trustedProxies;
+    std::atomic<bool> isEnding{false}; // every answer is the last of its connection
 };
 
 class Connection;
@@ -48,18 +48,18 @@ class Loop {
     ServerState& state() { return state_; }
 
     // From any thread.
+    void closeIdle(std::chrono::milliseconds atLeast); // those that have been idle for that long
     void stop();
     void cut();
     void join(); // ends the loop, dropping what is left
 
     // From the loop's own thread.
-    void adopt(Socket socket); // counted in openConnections already
+    void adopt(Socket socket, std::string countedFor); // a group of ServerState::connections; empty: none
     bool isStopping() const { return isStopping_; }
     BufferPool& buffers() { return buffers_; }
 
   private:
-    Task<void> serve(std::unique_ptr<Connection> connection);
-    void release(Connection& connection);
+    Task<void> serve(std::unique_ptr<Connection> connection, std::string countedFor);
     void scheduleSweep();
     void closeEach(const std::function<bool(const Connection&)>& which);
 

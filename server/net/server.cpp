@@ -1,5 +1,6 @@
 #include "server/net/server.hpp"
 
+#include "server/net/client_address.hpp"
 #include "server/net/loop.hpp"
 #include "shared/base/text.hpp"
 
@@ -8,12 +9,26 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <csignal>
+#include <sys/resource.h>
 
 namespace stipple::server {
 
 namespace {
 
 constexpr std::chrono::milliseconds acceptPause{100};
+// A connection that has been idle for this long is closed when others wait for a place.
+constexpr std::chrono::milliseconds evenIfFull{1000};
+// Descriptors that connections leave to files, event loops and whatever libraries open.
+constexpr rlim_t spareDescriptors = 128;
+
+// Of `wanted` connections, those that the system has descriptors for: one each, and perhaps a file each.
+int affordableConnections(int wanted) {
+    struct rlimit limit {};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return wanted;
+    rlim_t spare = std::min(spareDescriptors, limit.rlim_cur / 4);
+    return static_cast<int>(std::min<rlim_t>(static_cast<rlim_t>(wanted), limit.rlim_cur - spare));
+}
 
 Result<Tcp::endpoint> resolve(const std::string& host, std::uint16_t port) {
     Failure problem;
@@ -32,6 +47,7 @@ class BeastServer final : public Server {
   public:
     BeastServer(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log)
         : state_(options.limits), certificatePath_(options.certificatePath), keyPath_(options.keyPath) {
+        state_.limits.connections = affordableConnections(options.limits.connections);
         state_.handler = std::move(handler);
         state_.log = std::move(log);
         int cores = static_cast<int>(std::thread::hardware_concurrency());
@@ -46,6 +62,17 @@ class BeastServer final : public Server {
         for (auto& loop : loops_)
             loop->join();
         state_.jobs.end(); // before the loops that jobs report to
+    }
+
+    Status trust(const std::vector<std::string>& proxies) {
+        for (const std::string& proxy : proxies) {
+            Failure problem;
+            state_.trustedProxies.push_back(net::ip::make_address(proxy, problem));
+            if (problem)
+                return Error{ErrorCode::invalidArgument, "a trusted proxy is named by its IP address", proxy,
+                             "write, for example, 127.0.0.1"};
+        }
+        return {};
     }
 
     Status listen(const std::string& host, std::uint16_t port) {
@@ -79,7 +106,7 @@ class BeastServer final : public Server {
         return address.is_v6() ? cat(scheme, "://[", host, "]:", port(), "/")
                                : cat(scheme, "://", host, ":", port(), "/");
     }
-    int openConnections() const override { return state_.openConnections; }
+    int openConnections() const override { return state_.connections.all(); }
     JobCounts jobCounts() const override { return state_.jobs.counts(); }
 
     Status reloadCertificate() override {
@@ -91,7 +118,9 @@ class BeastServer final : public Server {
         return {};
     }
 
+    void announceEnd() override { state_.isEnding = true; }
     void stop() override {
+        announceEnd();
         net::post(loops_.front()->context(), [this] { stopAccepting(); });
         for (auto& loop : loops_)
             loop->stop();
@@ -102,9 +131,7 @@ class BeastServer final : public Server {
             loop->cut();
     }
     bool waitUntilDrained(std::chrono::milliseconds limit) override {
-        std::unique_lock lock(state_.drainedMutex);
-        return state_.drained.wait_for(lock, limit,
-                                       [this] { return isClosed_ && state_.openConnections == 0; });
+        return state_.connections.waitUntilNone(limit);
     }
 
   private:
@@ -112,31 +139,44 @@ class BeastServer final : public Server {
         Failure ignored;
         acceptor_->close(ignored);
         pause_->cancel();
-        std::lock_guard lock(state_.drainedMutex);
-        isClosed_ = true;
-        state_.drained.notify_all();
+        state_.connections.close();
     }
 
     // Runs on the first loop, and deals connections out to all in turn. When descriptors run out, or as many
     // connections are open as may be, it waits a moment instead of spinning; clients queue in the kernel.
     Task<void> acceptForever() {
         for (std::size_t next = 0; acceptor_->is_open();) {
-            if (state_.openConnections >= state_.limits.connections) {
+            if (state_.connections.all() >= state_.limits.connections) {
+                for (auto& loop : loops_)
+                    loop->closeIdle(evenIfFull);
                 co_await pause();
                 continue;
             }
             Loop& loop = *loops_[next];
             auto [error, socket] = co_await acceptor_->async_accept(loop.context(), answered);
-            if (error) {
-                if (error != net::error::operation_aborted)
-                    co_await pause();
-                continue;
-            }
-            next = (next + 1) % loops_.size();
-            ++state_.openConnections;
-            net::post(loop.context(),
-                      [&loop, moved = std::move(socket)]() mutable { loop.adopt(std::move(moved)); });
+            if (!error)
+                next = (next + 1) % loops_.size();
+            if (!error)
+                dealOut(loop, std::move(socket));
+            else if (error != net::error::operation_aborted && error != net::error::connection_aborted)
+                co_await pause();
         }
+    }
+
+    void dealOut(Loop& loop, Socket socket) {
+        Failure problem;
+        auto peer = socket.remote_endpoint(problem).address();
+        const auto& trusted = state_.trustedProxies;
+        bool isTrusted = std::find(trusted.begin(), trusted.end(), peer) != trusted.end();
+        std::string group = problem || isTrusted ? "" : clientGroup(peer);
+        int limit = group.empty() ? state_.limits.connections : state_.limits.connectionsPerClient;
+        if (!state_.connections.add(group, limit)) {
+            socket.set_option(net::socket_base::linger(true, 0), problem); // closed by a reset: costs nothing
+            return;
+        }
+        net::post(loop.context(), [&loop, moved = std::move(socket), group]() mutable {
+            loop.adopt(std::move(moved), std::move(group));
+        });
     }
 
     Task<void> pause() {
@@ -150,7 +190,6 @@ class BeastServer final : public Server {
     std::unique_ptr<Timer> pause_;
     const std::string certificatePath_, keyPath_;
     Tcp::endpoint endpoint_;
-    bool isClosed_ = false; // under drainedMutex
 };
 
 } // namespace
@@ -160,6 +199,7 @@ Result<std::unique_ptr<Server>> Server::start(const ServerOptions& options,
     std::signal(SIGPIPE, SIG_IGN);
     auto server = std::make_unique<BeastServer>(options, std::move(handler), std::move(log));
     STIPPLE_CHECK(server->reloadCertificate());
+    STIPPLE_CHECK(server->trust(options.trustedProxies));
     STIPPLE_CHECK(server->listen(options.host, options.port));
     return std::unique_ptr<Server>(std::move(server));
 }

@@ -19,23 +19,32 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace stipple::server {
 
 struct ServerLimits {
-    int connections = 1024; // open at once; further clients wait in the listen queue
+    // Open at once; further clients wait in the listen queue, and idle connections are closed for them. Never
+    // more than the system's limit on descriptors leaves room for beside files.
+    int connections = 4096;
+    int connectionsPerClient = 512; // of one address, IPv6: of one /64; more are closed at once
     std::size_t requestHeaderBytes = 16 * 1024;
-    std::chrono::milliseconds idle{60'000};       // from one answer to the next request's first byte
-    std::chrono::milliseconds header{10'000};     // from a request's first byte to the end of its header
-    std::chrono::milliseconds noProgress{30'000}; // for each 256 KiB of an answer to leave: 8.7 kB/s at least
-    std::chrono::milliseconds sweep{250};         // how often the limits are looked at
+    std::chrono::milliseconds idle{60'000}; // from one answer to the next request's first byte
+    // From a request's first byte to the end of its header; also for the handshake of TLS.
+    std::chrono::milliseconds header{10'000};
+    // For each progressBytes of an answer, or what is left of it, to leave: 8.7 kB/s at least.
+    std::chrono::milliseconds noProgress{30'000};
+    static constexpr std::size_t progressBytes = 256 * 1024;
+    std::chrono::milliseconds sweep{250}; // how often the limits are looked at
     JobLimits jobs;
 };
 
 struct ServerOptions {
-    std::string host = "127.0.0.1";       // address or name; loopback: nobody else can connect
-    std::uint16_t port = 0;               // 0: any free one
-    int threads = 0;                      // 0: one for each core, at most 8
+    std::string host = "127.0.0.1"; // address or name; loopback: nobody else can connect
+    std::uint16_t port = 0;         // 0: any free one
+    int threads = 0;                // 0: one for each core, at most 8
+    // Proxies whose X-Forwarded-For is believed, and whose connections are not limited; addresses.
+    std::vector<std::string> trustedProxies;
     std::string certificatePath, keyPath; // PEM; both: https, neither: http
     ServerLimits limits;
 };
@@ -43,6 +52,7 @@ struct ServerOptions {
 class Server {
   public:
     // Binds, listens and runs. Errors: networkFailed (the host is none of this machine's, the port is taken);
+    // invalidArgument (a trusted proxy is no address);
     // what TlsContext::load says of certificate and key.
     static Result<std::unique_ptr<Server>>
     start(const ServerOptions& options, std::shared_ptr<const RequestHandler> handler, RequestLog log);
@@ -58,6 +68,9 @@ class Server {
     // the files can't be used, so does everything.
     virtual Status reloadCertificate() = 0;
 
+    // What may come before the first step: /healthz says 503, so that whoever deals out requests stops
+    // sending them here, and every answer is the last of its connection; new ones are still accepted.
+    virtual void announceEnd() = 0;
     // First step of ending: accepts nothing more, closes idle connections, lets answers finish.
     virtual void stop() = 0;
     // Second step: closes everything.

@@ -34,8 +34,8 @@ ServerSignals::ServerSignals() : state_(std::make_unique<State>()) {
 
 ServerSignals::~ServerSignals() = default;
 
-void ServerSignals::runUntilSignalled(Server& server, std::chrono::milliseconds grace,
-                                      const std::function<void()>& reload) {
+void ServerSignals::runUntilSignalled(Server& server, std::chrono::milliseconds notice,
+                                      std::chrono::milliseconds grace, const std::function<void()>& reload) {
     constexpr std::chrono::milliseconds glance{20}, cutLimit{2000};
     while (state_->received == 0) {
         state_->context.run_one();
@@ -46,9 +46,12 @@ void ServerSignals::runUntilSignalled(Server& server, std::chrono::milliseconds 
         else
             ++state_->received;
     }
+    server.announceEnd();
+    auto now = [] { return std::chrono::steady_clock::now(); };
+    for (auto end = now() + notice; state_->received < 2 && now() < end;)
+        state_->context.run_one_until(end);
     server.stop();
-    auto end = std::chrono::steady_clock::now() + grace;
-    while (state_->received < 2 && !server.waitUntilDrained(glance) && std::chrono::steady_clock::now() < end)
+    for (auto end = now() + grace; state_->received < 2 && !server.waitUntilDrained(glance) && now() < end;)
         state_->context.poll();
     server.cut();
     server.waitUntilDrained(cutLimit);

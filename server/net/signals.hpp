@@ -18,9 +18,9 @@ class ServerSignals {
     ~ServerSignals();
 
     // Blocks until the server has ended. SIGHUP calls `reload`, on this thread, if there is one, and is like
-    // the others if not. The first of those stops accepting and lets running answers finish for up to
-    // `grace`; a second one, or the end of that time, cuts what is left.
-    void runUntilSignalled(Server& server, std::chrono::milliseconds grace,
+    // the others if not. The first of those announces the end for `notice`, then stops accepting and lets
+    // running answers finish for up to `grace`; a second one, or the end of that time, cuts what is left.
+    void runUntilSignalled(Server& server, std::chrono::milliseconds notice, std::chrono::milliseconds grace,
                            const std::function<void()>& reload);
 
   private:

@@ -139,10 +139,10 @@ Task<bool> Stream::writeAll(std::string_view bytes) {
     co_return true;
 }
 
-std::string Stream::clientAddress() const {
+net::ip::address Stream::peer() const {
     Failure problem;
     auto endpoint = socket_.remote_endpoint(problem);
-    return problem ? "-" : endpoint.address().to_string();
+    return problem ? net::ip::address() : endpoint.address();
 }
 
 bool Stream::hasClientLeft() const {

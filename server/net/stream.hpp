@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <string_view>
 
 namespace stipple::server {
@@ -48,7 +47,7 @@ class Stream {
     Task<bool> wait(Wait what);
     Task<bool> writeAll(std::string_view bytes);
 
-    std::string clientAddress() const; // without its port; "-" if it has left already
+    net::ip::address peer() const; // 0.0.0.0 if it has left already
     bool isOpen() const { return socket_.is_open(); }
     // Has the client closed, at least its sending side? Also with bytes of it unread.
     bool hasClientLeft() const;

@@ -24,8 +24,25 @@ CLI::Option* addCount(CLI::App& verb, const std::string& name, Number& limit, in
 }
 
 void addLimitOptions(CLI::App& verb, ServerLimits& limits) {
+    auto setRate = [&limits](double bytesPerSecond) {
+        limits.noProgress =
+            Milliseconds(static_cast<std::int64_t>(1000.0 * ServerLimits::progressBytes / bytesPerSecond));
+    };
+    CLI::Option* rate =
+        verb.add_option_function<double>("--slowest", setRate,
+                                         "Bytes a second; a client that reads an answer more slowly is cut")
+            ->check(CLI::Range(1.0, 1e9))
+            ->default_str("8738");
     for (CLI::Option* option :
-         {addCount(verb, "--jobs", limits.jobs.working, 0,
+         {addCount(verb, "--connections", limits.connections, 1,
+                   "Connections open at once; more wait (the system's limit on descriptors holds, too)"),
+          addCount(verb, "--connections-per-client", limits.connectionsPerClient, 1,
+                   "Connections of one address; more are closed"),
+          addSeconds(verb, "--idle-seconds", limits.idle, "Seconds that a connection may be idle"),
+          addSeconds(verb, "--header-seconds", limits.header,
+                     "Seconds for a request's header or a TLS handshake"),
+          rate,
+          addCount(verb, "--jobs", limits.jobs.working, 0,
                    "Jobs (exports, pictures) that compute at once; 0: one for each core, 2 to 8"),
           addCount(verb, "--jobs-per-client", limits.jobs.perClient, 1,
                    "Jobs of one client, waiting or running; more are refused (429)"),
@@ -47,6 +64,10 @@ void addNetOptions(CLI::App& verb, ServerOptions& options) {
     CLI::Option* key = verb.add_option("--key", options.keyPath, "PEM file of the certificate's private key");
     certificate->needs(key);
     key->needs(certificate);
+    verb.add_option(
+        "--trust-proxy", options.trustedProxies,
+        "Addresses of proxies that name their clients in X-Forwarded-For; their connections are not "
+        "limited");
     addLimitOptions(verb, options.limits);
 }
 

@@ -59,6 +59,10 @@ void addServingOptions(CLI::App& verb, ServingOptions& options) {
     verb.add_option("--grace", options.graceSeconds, "Seconds that downloads may go on after Ctrl-C")
         ->check(CLI::Range(0, 86400))
         ->capture_default_str();
+    verb.add_option("--notice", options.noticeSeconds,
+                    "Seconds for which /healthz says 503 after Ctrl-C before connections are refused")
+        ->check(CLI::Range(0, 86400))
+        ->capture_default_str();
 }
 
 int serveUntilSignalled(const char* verb, const ServingOptions& options,
@@ -95,7 +99,8 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
     std::function<void()> onHangUp;
     if (options.reloadsOnHangUp)
         onHangUp = [&] { reload(verb, **server, *site, log); };
-    signals.runUntilSignalled(**server, std::chrono::seconds(options.graceSeconds), onHangUp);
+    signals.runUntilSignalled(**server, std::chrono::seconds(options.noticeSeconds),
+                              std::chrono::seconds(options.graceSeconds), onHangUp);
     return cli::success;
 }
 

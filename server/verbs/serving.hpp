@@ -17,7 +17,7 @@ struct ServingOptions {
     ServerOptions server; // its port is 8017 unless chosen otherwise
     ChosenSite site;
     bool asJson = false;
-    int graceSeconds = 10;
+    int noticeSeconds = 0, graceSeconds = 10; // at the end
     bool reloadsOnHangUp =
         false; // SIGHUP, as services have it; otherwise it ends, as a closed terminal should
 };

@@ -224,6 +224,51 @@ TEST_CASE("clients beyond the limit wait their turn") {
     CHECK(third.receive().status == 206);
 }
 
+TEST_CASE("idle connections make room for clients that wait") {
+    auto limits = TestServer::quickLimits();
+    limits.connections = 2;
+    TestServer server(limits);
+    RawClient first(server.port()), second(server.port());
+    CHECK(first.ask("GET / HTTP/1.1\nHost: a").status == 200);
+    CHECK(second.ask("GET / HTTP/1.1\nHost: a").status == 200);
+    RawClient third(server.port());
+    third.send(smallRange);
+    CHECK(third.receive().status == 206);
+}
+
+TEST_CASE("one client has no more connections than its share, and others have theirs") {
+    auto limits = TestServer::quickLimits();
+    limits.connectionsPerClient = 2;
+    TestServer server(limits);
+    auto first = std::make_unique<RawClient>(server.port());
+    RawClient second(server.port());
+    CHECK(first->ask("GET / HTTP/1.1\nHost: a").status == 200);
+    CHECK(second.ask("GET / HTTP/1.1\nHost: a").status == 200);
+    RawClient third(server.port());
+    CHECK(third.isClosedWithin(2000));
+    RawClient other(server.port(), "127.0.0.2");
+    CHECK(other.ask("GET / HTTP/1.1\nHost: a").status == 200);
+    CHECK(server.server().openConnections() == 3);
+    first.reset();
+    int status = 0;
+    for (int i = 0; i < 100 && status != 200; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        status = askOnce(server.port(), "GET / HTTP/1.1\nHost: a").status;
+    }
+    CHECK(status == 200);
+}
+
+TEST_CASE("an announced end closes each connection after its answer, and still lets clients in") {
+    TestServer server;
+    RawClient before(server.port());
+    CHECK(before.ask("GET / HTTP/1.1\nHost: a").field("connection") == "keep-alive");
+    server.server().announceEnd();
+    CHECK_FALSE(before.isClosedWithin(100));
+    CHECK(before.ask("GET / HTTP/1.1\nHost: a").field("connection") == "close");
+    CHECK(before.isClosedWithin(2000));
+    CHECK(askOnce(server.port(), "GET / HTTP/1.1\nHost: a").status == 200);
+}
+
 TEST_CASE("stopping closes idle connections, finishes running answers and accepts nothing more") {
     TestServer server;
     RawClient idle(server.port()), busy(server.port());

@@ -79,6 +79,32 @@ TEST_CASE("serve refuses what it can't serve, with a sentence and a code") {
     CHECK(readFile(errors).find("--port") != std::string::npos);
 }
 
+TEST_CASE("a trusted proxy's clients are told apart, and nobody else's word is taken") {
+    TestFolder folder;
+    fs::path errors = folder.path() / "errors.txt";
+    Program program({"serve", folder.cloud().string(), "--port", "0", "--json", "--log", "combined",
+                     "--trust-proxy", "127.0.0.2", "127.0.0.3", "--connections-per-client", "1"},
+                    errors);
+    std::uint16_t port = portOf(program.line());
+    auto askFrom = [&](const char* from, const std::string& forwarded) {
+        RawClient client(port, from);
+        CHECK(client.ask("GET /api/v1/clouds HTTP/1.1\nHost: a\nX-Forwarded-For: " + forwarded).status ==
+              200);
+    };
+    RawClient open(port, "127.0.0.2");
+    CHECK(open.ask("GET /api/v1/clouds HTTP/1.1\nHost: a").status == 200);
+    askFrom("127.0.0.2", "6.6.6.6, 192.0.2.7, 127.0.0.3");
+    askFrom("127.0.0.4", "192.0.2.8");
+    program.signal(SIGTERM);
+    CHECK(program.wait() == 0);
+    std::string log = readFile(errors);
+    CHECK(log.find("192.0.2.7 - ") != std::string::npos);
+    CHECK(log.find("127.0.0.4 - ") != std::string::npos);
+    CHECK(log.find("192.0.2.8 - ") == std::string::npos);
+    CHECK(log.find("6.6.6.6 - ") == std::string::npos);
+    CHECK(Program({"serve", folder.cloud().string(), "--trust-proxy", "my-proxy"}, errors).wait() == 2);
+}
+
 TEST_CASE("serve speaks https with --cert and --key, and reads them again on SIGHUP") {
     TestFolder folder;
     fs::path errors = folder.path() / "errors.txt";
@@ -132,6 +158,9 @@ TEST_CASE("a server that runs out of descriptors recovers when clients leave") {
     for (int i = 0; i < 100; ++i)
         clients.push_back(std::make_unique<RawClient>(port));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    double before = program.cpuSeconds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    CHECK(program.cpuSeconds() - before < 0.1); // it does not spin on the clients that it can't accept
     // One of those that were let in finds no descriptor left for a file.
     auto busy = clients.front()->ask("GET /index.html HTTP/1.1\nHost: a");
     CHECK((busy.status == 503 || busy.status == 200));

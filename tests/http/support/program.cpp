@@ -1,5 +1,7 @@
 #include "tests/http/support/program.hpp"
 
+#include "tests/http/support/test_server.hpp"
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -49,6 +51,14 @@ std::string Program::line() {
     for (int c; (c = std::fgetc(output_)) != EOF && c != '\n';)
         text += static_cast<char>(c);
     return text;
+}
+
+double Program::cpuSeconds() const {
+    std::string stat = readFile("/proc/" + std::to_string(child_) + "/stat");
+    unsigned long user = 0, system = 0;
+    std::sscanf(stat.c_str() + stat.rfind(')') + 2, "%*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu",
+                &user, &system);
+    return static_cast<double>(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 void Program::signal(int number) const {

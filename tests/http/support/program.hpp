@@ -19,7 +19,8 @@ class Program {
     Program(const Program&) = delete;
     Program& operator=(const Program&) = delete;
 
-    std::string line(); // the next of standard output, without its end
+    std::string line();        // the next of standard output, without its end
+    double cpuSeconds() const; // that it has used
     void signal(int number) const;
     int wait(); // exit code; 1000 + signal
 
