@@ -79,10 +79,13 @@ bool isValid(const AddressSignature& signature, ByteSpan key, std::string_view c
 
 std::string withoutSignature(std::string_view query) {
     std::string rest;
-    while (!query.empty()) {
+    for (bool isFirst = true, isLast = false; !isLast;) {
+        isLast = query.find('&') == std::string_view::npos;
         std::string_view parameter = takeParameter(query);
-        if (nameOf(parameter) != expiresName && nameOf(parameter) != signatureName)
-            rest.append(rest.empty() ? "" : "&").append(parameter);
+        if (nameOf(parameter) == expiresName || nameOf(parameter) == signatureName)
+            continue;
+        rest.append(isFirst ? "" : "&").append(parameter);
+        isFirst = false;
     }
     return rest;
 }
