@@ -3,6 +3,7 @@
 #include "tests/http/support/raw_client.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -127,15 +128,19 @@ std::string exchange(RawClient& client, const std::vector<std::string>& lines, c
 
 } // namespace
 
-std::string playGoldenCase(const std::string& caseText, std::uint16_t port, const GoldenNames& names) {
-    RawClient client(port);
+std::string playGoldenCase(const std::string& caseText, std::uint16_t port, const GoldenNames& names,
+                           bool isApart) {
+    auto client = std::make_unique<RawClient>(port);
     std::string text;
     std::vector<std::string> request;
     bool isDescription = true;
     auto finishRequest = [&] {
-        if (!request.empty())
-            text += exchange(client, request, names);
+        if (request.empty())
+            return;
+        text += exchange(*client, request, names);
         request.clear();
+        if (isApart)
+            client = std::make_unique<RawClient>(port);
     };
     for (const std::string& line : linesOf(caseText)) {
         if (line.starts_with(">")) {
@@ -149,7 +154,7 @@ std::string playGoldenCase(const std::string& caseText, std::uint16_t port, cons
         }
     }
     finishRequest();
-    return text + stateLine(client);
+    return isApart ? text : text + stateLine(*client);
 }
 
 } // namespace stipple::test

@@ -21,7 +21,9 @@ namespace stipple::test {
 using GoldenNames = std::function<std::string(const std::string& name)>;
 
 // Plays the requests of `caseText` to the server at 127.0.0.1 and returns the case as it should then read:
-// the same text if the server answers as it says.
-std::string playGoldenCase(const std::string& caseText, std::uint16_t port, const GoldenNames& names);
+// the same text if the server answers as it says. `isApart`: each write on a connection of its own, and no
+// word on what becomes of it; for servers that close more often.
+std::string playGoldenCase(const std::string& caseText, std::uint16_t port, const GoldenNames& names,
+                           bool isApart = false);
 
 } // namespace stipple::test
