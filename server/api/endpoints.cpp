@@ -3,7 +3,10 @@
 #include "server/api/cloud_endpoints.hpp"
 #include "server/api/cloud_list_endpoint.hpp"
 #include "server/api/hierarchy_endpoint.hpp"
+#include "server/api/nearest_endpoint.hpp"
 #include "server/api/node_endpoint.hpp"
+#include "server/api/points_endpoint.hpp"
+#include "server/api/points_parameters.hpp"
 
 #include <array>
 
@@ -16,6 +19,9 @@ std::span<const Endpoint> endpoints() {
         Endpoint{"/clouds/{id}/hierarchy/{key}", answerHierarchy, hierarchyParameters},
         Endpoint{"/clouds/{id}/nodes", answerBatch, batchParameters},
         Endpoint{"/clouds/{id}/nodes/{key}", answerNode, nodeParameters},
+        Endpoint{"/clouds/{id}/points", answerPoints, pointsParameters},
+        Endpoint{"/clouds/{id}/profile", answerProfile, profileParameters},
+        Endpoint{"/clouds/{id}/nearest", answerNearest, nearestParameters},
         Endpoint{"/problems/{name}", answerProblemType},
     };
     return table;

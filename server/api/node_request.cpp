@@ -22,22 +22,27 @@ std::string NodePart::text() const {
     return text;
 }
 
+Result<std::vector<int>> attributesOf(const Query& query, const Schema& schema) {
+    const std::string* names = query.find(attributesParameter.name);
+    std::vector<int> attributes;
+    if (!names) {
+        attributes.resize(schema.attributes.size());
+        std::iota(attributes.begin(), attributes.end(), 0);
+    } else if (*names != "none" || schema.find("none") >= 0) {
+        auto named = attributesFromTexts(schema, {*names});
+        if (!named)
+            return parameterError(attributesParameter.name, named.error().what, named.error().advice);
+        attributes = std::move(*named);
+    }
+    return attributes;
+}
+
 Result<NodePart> nodePartOf(const ApiCall& call) {
-    const Schema& schema = call.cloud->metadata.schema;
     NodePart part;
     STIPPLE_TRY(strata, countOf(call.query, strataParameter));
     part.strata = static_cast<int>(strata.value_or(strataCount));
-    const std::string* names = call.query.find(attributesParameter.name);
-    if (!names) {
-        part.attributes.resize(schema.attributes.size());
-        std::iota(part.attributes.begin(), part.attributes.end(), 0);
-    } else if (*names != "none" || schema.find("none") >= 0) {
-        auto attributes = attributesFromTexts(schema, {*names});
-        if (!attributes)
-            return parameterError(attributesParameter.name, attributes.error().what,
-                                  attributes.error().advice);
-        part.attributes = std::move(*attributes);
-    }
+    STIPPLE_TRY(attributes, attributesOf(call.query, call.cloud->metadata.schema));
+    part.attributes = std::move(attributes);
     return part;
 }
 

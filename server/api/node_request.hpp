@@ -32,6 +32,10 @@ inline constexpr Parameter attributesParameter{
 // The key in the path of a call, its second name. invalidArgument, naming the parameter "key".
 Result<NodeKey> nodeKeyOf(const ApiCall& call);
 
+// What attributesParameter asks for: indices into the schema, in the order asked for. invalidArgument, naming
+// the parameter.
+Result<std::vector<int>> attributesOf(const Query& query, const Schema& schema);
+
 struct NodePart {
     int strata = strataCount;
     std::vector<int> attributes; // indices into metadata.schema.attributes, in the order asked for

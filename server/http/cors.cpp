@@ -78,6 +78,9 @@ void CorsRules::complete(const HttpRequest& request, HttpResponse& response, boo
     response.set("Access-Control-Expose-Headers",
                  "Accept-Ranges, Content-Length, Content-Range, ETag, Last-Modified, Link, Retry-After, "
                  "WWW-Authenticate");
+    for (const char* own : {"Content-Disposition", "Stipple-Point-Count"})
+        if (!response.field(own).empty())
+            response.addToList("Access-Control-Expose-Headers", own);
 }
 
 HttpResponse preflightResponse(const std::string& allowedMethods) {

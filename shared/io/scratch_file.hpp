@@ -44,6 +44,7 @@ class ScratchFile {
     void keep() { keep_ = true; }
     // Its folder if it has no name.
     const std::string& path() const { return path_; }
+    int descriptor() const { return descriptor_; } // open as long as the object lives
 
   private:
     ScratchFile(int descriptor, std::string path, std::uint64_t end)

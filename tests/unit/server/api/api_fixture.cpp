@@ -51,7 +51,8 @@ class Collector final : public AnswerWriter {
 
 } // namespace
 
-ApiFixture::ApiFixture(const SmallCloudOptions& options) : cloud_(makeSmallCloud(options)) {
+ApiFixture::ApiFixture(const SmallCloudOptions& options, const ApiLimits& limits)
+    : cloud_(makeSmallCloud(options)), resources_(limits) {
     writeText(path(), std::string(cloud_.file.begin(), cloud_.file.end()));
     auto opened = CloudCatalog::open({path()});
     REQUIRE(opened.ok());

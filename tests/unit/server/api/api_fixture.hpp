@@ -25,7 +25,7 @@ struct ApiAnswer {
 
 class ApiFixture {
   public:
-    explicit ApiFixture(const SmallCloudOptions& options = {});
+    explicit ApiFixture(const SmallCloudOptions& options = {}, const server::ApiLimits& limits = {});
 
     using Fields = std::vector<std::pair<std::string_view, std::string_view>>;
     // The whole answer; a job is run to its end on this thread.
@@ -33,6 +33,7 @@ class ApiFixture {
 
     const SmallCloud& cloud() const { return cloud_; } // of id "small"
     std::string version() const { return ask("/api/v1/clouds/small").json["version"]; }
+    const server::ApiResources& resources() const { return resources_; }
     std::string path() const { return folder_.file("small.stipple"); }
 
   private:
