@@ -38,6 +38,61 @@ Result<Camera> cameraOf(const PictureRequest& request, const BoxD& content) {
     return camera;
 }
 
+class Session final : public PictureSession {
+  public:
+    Session(std::unique_ptr<ByteSource> source, const PictureRequest& request)
+        : name_(source->name()), decoder_(makeThreadDecoder(request.threads)),
+          session_(ViewSession::create(*decoder_, withoutPoints(request.limits))) {
+        session_->addCloud(std::move(source), name_);
+    }
+
+    Status waitUntilOpen(const PictureRequest& request) {
+        SessionLoader loader(*session_, name_, request.timeout, request.stop);
+        return loader.until([&] { return session_->clouds().front().stage == CloudStage::ready; });
+    }
+
+    Result<Picture> draw(const PictureRequest& request) override {
+        STIPPLE_CHECK(checkRequest(request));
+        auto start = Clock::now();
+        Picture picture;
+        STIPPLE_TRY(camera, cameraOf(request, session_->contentBounds()));
+        session_->setViewport(request.width, request.height);
+        session_->setStyle(request.style);
+        session_->setCamera(camera);
+        session_->setLimits(request.limits);
+        session_->update(); // what was settled for another picture is not for this one
+        SessionLoader loader(*session_, name_, request.timeout, request.stop);
+        bool firstIsEnough = request.until == Until::first;
+        STIPPLE_CHECK(loader.until([&] {
+            return session_->settled() || (firstIsEnough && session_->plan().counters.pointsDrawn > 0);
+        }));
+        picture.loadSeconds = secondsSince(start);
+
+        FramePlan plan = session_->plan();
+        STIPPLE_TRY(drawer, FrameDrawer::create(request.backend, request.threads));
+        picture.renderer = drawer->name();
+        start = Clock::now();
+        STIPPLE_TRY(image, drawer->draw(plan));
+        picture.drawSeconds = secondsSince(start);
+        picture.image = *image;
+        picture.camera = camera;
+        picture.frame = plan.counters;
+        picture.session = session_->counters();
+        return picture;
+    }
+
+  private:
+    // Nothing is wanted before the camera is known.
+    static SessionLimits withoutPoints(SessionLimits limits) {
+        limits.pointBudget = 0;
+        return limits;
+    }
+
+    std::string name_;
+    std::unique_ptr<NodeDecoder> decoder_; // outlives the session
+    std::unique_ptr<ViewSession> session_;
+};
+
 } // namespace
 
 Status checkRequest(const PictureRequest& request) {
@@ -52,44 +107,23 @@ Status checkRequest(const PictureRequest& request) {
     return {};
 }
 
+Result<std::unique_ptr<PictureSession>> PictureSession::open(std::unique_ptr<ByteSource> source,
+                                                             const PictureRequest& request) {
+    auto session = std::make_unique<Session>(std::move(source), request);
+    STIPPLE_CHECK(session->waitUntilOpen(request));
+    return std::unique_ptr<PictureSession>(std::move(session));
+}
+
 Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request) {
     STIPPLE_CHECK(checkRequest(request));
     auto start = Clock::now();
-    auto decoder = makeThreadDecoder(request.threads);
-    auto session = ViewSession::create(*decoder, request.limits);
-    session->setViewport(request.width, request.height);
-    session->setStyle(request.style);
-    // Nothing is wanted before the camera is known.
-    SessionLimits opening = request.limits;
-    opening.pointBudget = 0;
-    session->setLimits(opening);
-
-    std::string name = source->name();
-    SessionLoader loader(*session, name, request.timeout);
-    session->addCloud(std::move(source), name);
-    STIPPLE_CHECK(loader.until([&] { return session->clouds().front().stage == CloudStage::ready; }));
-    Picture picture;
-    picture.openSeconds = secondsSince(start);
-
-    STIPPLE_TRY(camera, cameraOf(request, session->contentBounds()));
-    session->setCamera(camera);
-    session->setLimits(request.limits);
-    bool firstIsEnough = request.until == Until::first;
-    STIPPLE_CHECK(loader.until(
-        [&] { return session->settled() || (firstIsEnough && session->plan().counters.pointsDrawn > 0); }));
-    picture.loadSeconds = secondsSince(start) - picture.openSeconds;
-
-    FramePlan plan = session->plan();
-    STIPPLE_TRY(drawer, FrameDrawer::create(request.backend, request.threads));
-    picture.renderer = drawer->name();
-    start = Clock::now();
-    STIPPLE_TRY(image, drawer->draw(plan));
-    picture.drawSeconds = secondsSince(start);
-    picture.image = *image;
-    picture.camera = camera;
-    picture.frame = plan.counters;
-    picture.session = session->counters();
-    return picture;
+    STIPPLE_TRY(session, PictureSession::open(std::move(source), request));
+    PictureRequest rest = request;
+    double openSeconds = secondsSince(start);
+    rest.timeout -= std::chrono::milliseconds(static_cast<std::int64_t>(openSeconds * 1000));
+    STIPPLE_TRY(picture, session->draw(rest));
+    picture.openSeconds = openSeconds;
+    return std::move(picture);
 }
 
 } // namespace stipple::headless

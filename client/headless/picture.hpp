@@ -11,6 +11,7 @@
 #include "shared/base/result.hpp"
 #include "shared/io/byte_source.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -33,6 +34,7 @@ struct PictureRequest {
     Until until = Until::complete;
     int threads = 0;                           // of decoding and the software backend; 0: one per core
     std::chrono::milliseconds timeout{60'000}; // for opening and loading together
+    const std::atomic<bool>* stop = nullptr;   // once true, opening and loading end with `cancelled`
 };
 
 struct Picture {
@@ -47,8 +49,24 @@ struct Picture {
 // What can be said against a request before anything is opened: size, view. invalidArgument.
 Status checkRequest(const PictureRequest& request);
 
-// Errors: those of the request, of the source, of the file's bytes (also of single nodes: a picture with
-// holes is no answer), of the GL driver; networkFailed or limitExceeded when time runs out.
+// One cloud, opened, from which any number of pictures are drawn: what one has loaded and decoded serves the
+// next, as far as the cache (limits.cacheBytes) goes. A picture does not depend on those before it. Thread:
+// one at a time.
+class PictureSession {
+  public:
+    virtual ~PictureSession() = default;
+
+    // Opens the cloud with the limits, threads, timeout and stop of `request`. Errors: of the source and of
+    // the file's bytes; networkFailed or limitExceeded when time runs out; cancelled.
+    static Result<std::unique_ptr<PictureSession>> open(std::unique_ptr<ByteSource> source,
+                                                        const PictureRequest& request);
+    // openSeconds is 0. Errors: those of the request, of the source, of the file's bytes (also of single
+    // nodes: a picture with holes is no answer), of the GL driver; those of open(). After an error the
+    // session is not to be used again.
+    virtual Result<Picture> draw(const PictureRequest& request) = 0;
+};
+
+// A session for one picture.
 Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request);
 
 } // namespace stipple::headless

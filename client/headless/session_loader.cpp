@@ -12,11 +12,15 @@ constexpr std::chrono::milliseconds updateWait{100};
 
 } // namespace
 
-SessionLoader::SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout)
-    : session_(session), name_(std::move(name)), timeout_(timeout), deadline_(Clock::now() + timeout) {}
+SessionLoader::SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout,
+                             const std::atomic<bool>* stop)
+    : session_(session), name_(std::move(name)), timeout_(timeout), deadline_(Clock::now() + timeout),
+      stop_(stop) {}
 
 Status SessionLoader::until(const std::function<bool()>& done) {
     while (!done()) {
+        if (stop_ && *stop_)
+            return Error{ErrorCode::cancelled, "the picture was taken back", name_, ""};
         if (Clock::now() >= deadline_)
             return timeOut();
         session_.update(updateWait);

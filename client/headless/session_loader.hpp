@@ -4,6 +4,7 @@
 #include "client/core/view_session.hpp"
 #include "shared/base/result.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <functional>
 #include <string>
@@ -12,12 +13,14 @@ namespace stipple::headless {
 
 class SessionLoader {
   public:
-    // `session` has clouds of one source, called `name`; `timeout` counts from here on.
-    SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout);
+    // `session` has clouds of one source, called `name`; `timeout` counts from here on. `stop` (may be null)
+    // outlives it.
+    SessionLoader(ViewSession& session, std::string name, std::chrono::milliseconds timeout,
+                  const std::atomic<bool>* stop = nullptr);
 
     // Updates the session until `done()`. Errors: of a cloud that failed, of single nodes (also once done: a
     // picture with holes is no answer); networkFailed (addresses) or limitExceeded (files) when time runs
-    // out.
+    // out; cancelled once `stop`.
     Status until(const std::function<bool()>& done);
 
   private:
@@ -27,6 +30,7 @@ class SessionLoader {
     std::string name_;
     std::chrono::milliseconds timeout_;
     std::chrono::steady_clock::time_point deadline_;
+    const std::atomic<bool>* stop_;
 };
 
 } // namespace stipple::headless

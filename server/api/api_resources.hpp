@@ -1,15 +1,17 @@
-// What the endpoints share: limits, caches, room on disk. Lives as long as the server. Thread: any.
+// What the endpoints share: limits, caches, room on disk, and what draws pictures. Lives as long as the
+// server. Thread: any.
 #pragma once
 
 #include "server/api/hierarchy_cache.hpp"
 #include "server/files/scratch_space.hpp"
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <string>
 
 namespace stipple::server {
+
+class PictureService;
 
 // Of one answer of points.
 struct PointLimits {
@@ -25,21 +27,18 @@ struct ApiLimits {
     std::uint64_t scratchBytes = 16ull << 30; // of all of them at once
 };
 
-struct ApiResources {
-    explicit ApiResources(const ApiLimits& chosen = {})
-        : limits(chosen), hierarchy(chosen.hierarchyCacheBytes),
-          scratch(std::make_shared<ScratchSpace>(folderOf(chosen), chosen.scratchBytes)) {}
+class ApiResources {
+  public:
+    explicit ApiResources(const ApiLimits& chosen = {});
+    ~ApiResources();
 
     const ApiLimits limits;
     HierarchyCache hierarchy;
     const std::shared_ptr<ScratchSpace> scratch;
+    PictureService& pictures() const { return *pictures_; }
 
   private:
-    static std::string folderOf(const ApiLimits& limits) {
-        std::error_code none;
-        return limits.scratchFolder.empty() ? std::filesystem::temp_directory_path(none).string()
-                                            : limits.scratchFolder;
-    }
+    std::unique_ptr<PictureService> pictures_;
 };
 
 } // namespace stipple::server

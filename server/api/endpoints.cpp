@@ -3,6 +3,8 @@
 #include "server/api/cloud_endpoints.hpp"
 #include "server/api/cloud_list_endpoint.hpp"
 #include "server/api/hierarchy_endpoint.hpp"
+#include "server/api/image_endpoint.hpp"
+#include "server/api/image_request.hpp"
 #include "server/api/nearest_endpoint.hpp"
 #include "server/api/node_endpoint.hpp"
 #include "server/api/points_endpoint.hpp"
@@ -17,6 +19,7 @@ std::span<const Endpoint> endpoints() {
         Endpoint{"/clouds", answerClouds, cloudListParameters},
         Endpoint{"/clouds/{id}", answerCloud},
         Endpoint{"/clouds/{id}/hierarchy/{key}", answerHierarchy, hierarchyParameters},
+        Endpoint{"/clouds/{id}/image", answerImage, imageParameters},
         Endpoint{"/clouds/{id}/nodes", answerBatch, batchParameters},
         Endpoint{"/clouds/{id}/nodes/{key}", answerNode, nodeParameters},
         Endpoint{"/clouds/{id}/points", answerPoints, pointsParameters},

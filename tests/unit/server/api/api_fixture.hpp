@@ -2,6 +2,7 @@
 #pragma once
 
 #include "server/api/api.hpp"
+#include "server/api/picture_service.hpp"
 #include "server/site/cloud_catalog.hpp"
 #include "tests/support/small_cloud.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -31,6 +32,8 @@ class ApiFixture {
     // The whole answer; a job is run to its end on this thread.
     ApiAnswer ask(const std::string& target, Fields fields = {}, std::string_view method = "GET") const;
 
+    std::shared_ptr<const server::CloudVersion> cloudVersion() const { return *catalog_->current("small"); }
+    server::PictureService& pictures() const { return resources_.pictures(); }
     const SmallCloud& cloud() const { return cloud_; } // of id "small"
     std::string version() const { return ask("/api/v1/clouds/small").json["version"]; }
     const server::ApiResources& resources() const { return resources_; }
