@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <new>
 
 using namespace stipple;
 
@@ -16,7 +17,8 @@ int main(int argc, char** argv) {
     program.require_subcommand(1);
     program.footer(
         "Exit codes: 0 success, 2 wrong usage, 3 an input is missing or damaged, 4 the output can't be\n"
-        "written, 5 verification failed, 6 the network or a server failed, 130 interrupted.");
+        "written (or there is not enough memory), 5 verification failed, 6 the network or a server failed, "
+        "130 interrupted.");
 
     cli::Action action;
     for (auto addVerb : headless::allVerbs())
@@ -29,6 +31,9 @@ int main(int argc, char** argv) {
     }
     try {
         return action();
+    } catch (const std::bad_alloc&) {
+        std::fputs("stipple: there is not enough memory\n", stderr);
+        return cli::outputError;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "stipple: %s\n", error.what());
         return cli::inputError;

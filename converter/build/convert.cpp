@@ -172,7 +172,7 @@ class Conversion {
         if (!folder)
             return folder.error();
         result_.resumed = (*folder)->resumes();
-        Status done = runIn(scan, **folder);
+        Status done = attempt(scan, **folder);
         if (!done) {
             keepIfUseful(done.error(), **folder);
             return describeEnd(done.error(), **folder);
@@ -181,6 +181,14 @@ class Conversion {
     }
 
   private:
+    Status attempt(const Scan& scan, WorkFolder& folder) {
+        try {
+            return runIn(scan, folder);
+        } catch (const std::bad_alloc&) {
+            return outOfMemory();
+        }
+    }
+
     Status runIn(const Scan& scan, WorkFolder& folder) {
         // Half of the memory for points that wait, half for those at work.
         STIPPLE_CHECK(checkDisk(scan, memoryBytes_ / 2, folder, result_));
@@ -257,15 +265,23 @@ class Conversion {
         return {};
     }
 
-    // What a longer run has done stays when it could go on: the disk was full or failed, or somebody stopped
-    // it.
+    // What a longer run has done stays when it could go on: the disk or the memory was full, the disk failed,
+    // or somebody stopped it.
     void keepIfUseful(const Error& error, WorkFolder& folder) const {
         bool mayGoOn = error.code == ErrorCode::cancelled || error.code == ErrorCode::writeFailed ||
-                       error.code == ErrorCode::ioFailed;
-        if (mayGoOn && (onDisk_ || folder.load("tiles").ok()))
+                       error.code == ErrorCode::ioFailed || error.code == ErrorCode::outOfMemory;
+        if (mayGoOn && hasCheckpoint(folder))
             folder.keep();
         else
             kept_ = false;
+    }
+
+    bool hasCheckpoint(const WorkFolder& folder) const {
+        try {
+            return onDisk_ || folder.load("tiles").ok();
+        } catch (const std::bad_alloc&) {
+            return true; // too large to look at now, so there is one
+        }
     }
 
     Error describeEnd(Error error, const WorkFolder& folder) const {
@@ -304,8 +320,7 @@ Result<ConvertResult> convertFiles(const std::vector<std::string>& inputs, const
     try {
         return Conversion(all, output, options, progress).run();
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::limitExceeded, "there is not enough memory", "",
-                     "allow less with --memory, or use fewer threads"};
+        return outOfMemory();
     }
 }
 

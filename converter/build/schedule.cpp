@@ -1,5 +1,7 @@
 #include "converter/build/schedule.hpp"
 
+#include "converter/build/parallel.hpp"
+
 #include <algorithm>
 #include <condition_variable>
 #include <mutex>
@@ -24,6 +26,7 @@ class Schedule {
              const std::function<Status(std::size_t)>& work)
         : nodes_(nodes), memoryBytes_(memoryBytes), stop_(stop), work_(work), waitsFor_(nodes.size(), 0),
           after_(nodes.size()) {
+        ready_.reserve(nodes.size()); // nothing may be thrown where it grows
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (nodes[i].done)
                 continue;
@@ -39,25 +42,23 @@ class Schedule {
     }
 
     Status run(int threads) {
-        std::vector<std::thread> pool;
-        for (int t = 1; t < threads && t < static_cast<int>(nodes_.size()); ++t)
-            pool.emplace_back([this] { loop(); });
+        const std::size_t wanted = std::min(static_cast<std::size_t>(std::max(1, threads)), nodes_.size());
+        std::vector<std::thread> pool =
+            startThreads(wanted > 1 ? wanted - 1 : 0, [this](std::size_t) { loop(); });
         loop();
         for (std::thread& thread : pool)
             thread.join();
         if (error_)
             return *error_;
+        if (outOfMemory_)
+            return outOfMemory();
         return {};
     }
 
   private:
     void loop() {
         std::unique_lock lock(mutex_);
-        while (left_ > 0 && !error_) {
-            if (stop_ && *stop_) {
-                error_ = Error{ErrorCode::cancelled, "interrupted", "", ""};
-                break;
-            }
+        while (left_ > 0 && !error_ && !outOfMemory_) {
             std::optional<std::size_t> next = take();
             if (!next) {
                 changed_.wait(lock);
@@ -67,12 +68,10 @@ class Schedule {
             ++running_;
             memoryInUse_ += nodes_[*next].memoryBytes;
             lock.unlock();
-            Status done = attempt(*next);
+            attempt(*next);
             lock.lock();
             --running_;
             memoryInUse_ -= nodes_[*next].memoryBytes;
-            if (!done && !error_)
-                error_ = done.error();
             for (std::size_t later : after_[*next])
                 if (--waitsFor_[later] == 0)
                     ready_.push_back(later);
@@ -96,12 +95,15 @@ class Schedule {
         return index;
     }
 
-    Status attempt(std::size_t index) {
+    // Notes what came of it; where memory has run out, without asking for any.
+    void attempt(std::size_t index) {
         try {
-            return work_(index);
+            Status done = stop_ && *stop_ ? Error{ErrorCode::cancelled, "interrupted", "", ""} : work_(index);
+            std::lock_guard lock(mutex_);
+            if (!done && !error_)
+                error_ = done.error();
         } catch (const std::bad_alloc&) {
-            return Error{ErrorCode::limitExceeded, "there is not enough memory", "",
-                         "allow less with --memory, or use fewer threads"};
+            outOfMemory_ = true;
         }
     }
 
@@ -116,6 +118,7 @@ class Schedule {
     std::size_t left_ = 0, running_ = 0; // not started; at work
     std::uint64_t memoryInUse_ = 0;
     std::optional<Error> error_;
+    std::atomic<bool> outOfMemory_{false};
 };
 } // namespace
 

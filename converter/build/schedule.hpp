@@ -31,7 +31,7 @@ std::vector<std::vector<std::size_t>> predecessors(const std::vector<ScheduledNo
 // Calls work(index) once for every node that is not done, on up to `threads` threads, while the memory of
 // those at work stays within `memoryBytes` (one may always run). After an error nothing more starts; the
 // error is returned. Large nodes go first among those that are ready. Running out of memory in `work` is
-// limitExceeded; `stop` turning true is cancelled.
+// outOfMemory; `stop` turning true is cancelled.
 Status runScheduled(const std::vector<ScheduledNode>& nodes,
                     const std::vector<std::vector<std::size_t>>& before, int threads,
                     std::uint64_t memoryBytes, const std::atomic<bool>* stop,

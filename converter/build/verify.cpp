@@ -160,8 +160,7 @@ Result<VerifyReport> verifyFile(const std::string& path, const std::vector<std::
     try {
         return Verification(path, options, progress).run(inputs);
     } catch (const std::bad_alloc&) {
-        return Error{ErrorCode::limitExceeded, "there is not enough memory to compare all points", path,
-                     "allow less with --memory, or use fewer threads"};
+        return outOfMemory();
     }
 }
 

@@ -160,7 +160,7 @@ class Walk {
             try {
                 return choose(*node, tested, mayBeCut);
             } catch (const std::bad_alloc&) {
-                return Error{ErrorCode::limitExceeded, "there is not enough memory to decode it",
+                return Error{ErrorCode::outOfMemory, "there is not enough memory to decode it",
                              cat(name_, ", node ", node->entry.key.text()), "use fewer threads"};
             }
         });

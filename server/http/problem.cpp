@@ -134,6 +134,7 @@ HttpResponse problemResponse(const Error& error) {
     case ErrorCode::notFound:
     case ErrorCode::invalidArgument:
         return problemResponse(404, "there is nothing at this address");
+    case ErrorCode::outOfMemory:
     case ErrorCode::limitExceeded: {
         HttpResponse response = problemResponse(503, "the server is too busy to open the file");
         response.set("Retry-After", "1");
@@ -153,6 +154,7 @@ HttpResponse jobProblem(const Error& error) {
     case ErrorCode::outOfRange:
         return problemResponse({invalidParameter, error.what});
     case ErrorCode::limitExceeded:
+    case ErrorCode::outOfMemory:
         return problemResponse({workTooLarge, error.what});
     case ErrorCode::cancelled:
         return problemResponse({outOfTime, "the answer took longer than the server gives to one request"});

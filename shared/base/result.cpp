@@ -18,6 +18,8 @@ const char* errorCodeName(ErrorCode code) {
         return "unsupported";
     case ErrorCode::limitExceeded:
         return "limitExceeded";
+    case ErrorCode::outOfMemory:
+        return "outOfMemory";
     case ErrorCode::outOfRange:
         return "outOfRange";
     case ErrorCode::ioFailed:

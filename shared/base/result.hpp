@@ -18,6 +18,7 @@ enum class ErrorCode {
     corrupt,         // the bytes contradict themselves or their checksum
     unsupported,     // well-formed, but a version or feature this program does not know
     limitExceeded,   // a stated limit of bytes, items or time would be exceeded
+    outOfMemory,     // the machine has no more memory for this process
     outOfRange,      // a value does not fit the type or grid it has to go to
     ioFailed,        // the operating system refused
     writeFailed,     // an output can't be made or written

@@ -9,6 +9,7 @@ int exitCodeOf(const Error& error) {
     case ErrorCode::invalidArgument:
         return usageError;
     case ErrorCode::writeFailed:
+    case ErrorCode::outOfMemory:
         return outputError;
     case ErrorCode::networkFailed:
         return networkError;

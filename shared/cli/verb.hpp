@@ -14,7 +14,7 @@ enum ExitCode : int {
     success = 0,
     usageError = 2,         // unknown verb or option, a value out of its range
     inputError = 3,         // an input is missing, unreadable, damaged or not understood
-    outputError = 4,        // the output can't be written
+    outputError = 4,        // the output can't be written, or memory ran out on the way to it
     verificationFailed = 5, // `verify`: the file is readable, but is not what it should be
     networkError = 6,       // a server can't be reached or does not answer as it must
     interrupted = 130,      // Ctrl-C

@@ -6,6 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fcntl.h>
+#include <limits>
+#include <optional>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 
 using namespace stipple;
@@ -44,6 +49,37 @@ bool mayMount(const TemporaryFolder& folder) {
     return false;
 }
 
+// A small disk, which this process alone sees from now on. Nothing where it may not mount one.
+class SmallDisk {
+  public:
+    static std::unique_ptr<SmallDisk> mount(const std::string& path, const std::string& size) {
+        fs::create_directory(path);
+        if (::unshare(CLONE_NEWNS) == 0 && ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0 &&
+            ::mount("none", path.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0)
+            return std::unique_ptr<SmallDisk>(new SmallDisk(path));
+        WARN("skipped: this process may not mount file systems");
+        return nullptr;
+    }
+    ~SmallDisk() { ::umount2(path_.c_str(), MNT_DETACH); }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+
+    // What another program may do at any time. Thread: any.
+    void fill() const {
+        int file = ::open(filler().c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+        const Bytes page(1 << 16, 1);
+        while (::write(file, page.data(), page.size()) > 0)
+            continue;
+        ::close(file);
+    }
+    void empty() const { fs::remove(filler()); }
+
+  private:
+    explicit SmallDisk(std::string path) : path_(std::move(path)) {}
+    std::string filler() const { return path_ + "/filler"; }
+    std::string path_;
+};
+
 // Some 10 MB; its cloud is about 3 MB.
 void writeLarge(const std::string& path) {
     writeScan(surfaceScan(1, 400000, 1), path);
@@ -65,7 +101,7 @@ ConvertOptions pieces(std::uint64_t memoryBytes) {
     ConvertOptions options;
     options.memoryBytes = memoryBytes;
     options.threads = 2;
-    options.sizes = {.pointsPerRound = 20000, .subtreeBytes = std::uint64_t{1} << 20};
+    options.sizes = {.pointsPerRound = 20000, .subtreeBytes = std::uint64_t{1} << 22};
     return options;
 }
 
@@ -291,4 +327,82 @@ TEST_CASE("a conversion on disk that is stopped keeps its checkpoint, and goes o
             CHECK_FALSE(fs::exists(folder / "out.stipple.work"));
             fs::remove(folder / "out.stipple");
         }
+}
+
+TEST_CASE("a disk that fills up while points are on it keeps the checkpoint, and nothing else",
+          "[failures]") {
+    TemporaryFolder folder;
+    auto disk = SmallDisk::mount(folder / "disk", "100m");
+    if (!disk)
+        return;
+    auto inputs = writeSix(folder);
+    ConvertOptions options = pieces(1);
+    options.name = "out";
+    convertOrFail(inputs, folder / "whole.stipple", options);
+    const Bytes whole = fileBytes(folder / "whole.stipple");
+    const std::string output = folder / "disk/out.stipple";
+    for (const auto& [phase, part] :
+         {std::pair<std::string, double>{"tile", 0.5}, std::pair<std::string, double>{"tile", 1},
+          std::pair<std::string, double>{"sample", 0.4}, std::pair<std::string, double>{"sample", 1}}) {
+        INFO("full in phase " << phase << " at " << part);
+        std::atomic<bool> isFull{false};
+        auto full = convertFiles(
+            inputs, output, options, [&](const std::string& now, std::uint64_t done, std::uint64_t total) {
+                bool due = now == phase && static_cast<double>(done) >= part * static_cast<double>(total);
+                if (due && !isFull.exchange(true))
+                    disk->fill();
+            });
+        REQUIRE_FALSE(full.ok());
+        INFO(full.error().sentence());
+        CHECK(cli::exitCodeOf(full.error()) == cli::outputError);
+        CHECK(full.error().sentence().find("No space left on device (free space on that disk, or ") !=
+              std::string::npos);
+        CHECK(full.error().sentence().find("is kept in " + output + ".work: the same command goes on") !=
+              std::string::npos);
+        disk->empty();
+        CHECK(std::distance(fs::directory_iterator(folder / "disk"), fs::directory_iterator()) == 1);
+        CHECK(fs::exists(output + ".work/tiles"));
+        ConvertResult resumed = convertOrFail(inputs, output, options);
+        CHECK(resumed.resumed);
+        CHECK((fileBytes(output) == whole));
+        CHECK_FALSE(fs::exists(output + ".work"));
+        fs::remove(output);
+    }
+}
+
+TEST_CASE("where memory runs out, what went to disk stays, and goes on later to the same bytes",
+          "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(3, 1200000, 1), folder / "in.las"); // 46 MB of rows, of which 32 stay in memory
+    auto line = [&](const std::string& output) {
+        return convertLine(folder / "in.las", folder / output) +
+               " --name out --memory 64M --threads 2 --json";
+    };
+    REQUIRE(shell(line("whole.stipple")).code == cli::success);
+    const Bytes whole = fileBytes(folder / "whole.stipple");
+    const std::string output = folder / "out.stipple";
+    int kept = 0, failed = 0;
+    for (int megabytes : {60, 100, 120, 140, 160, 180, 240}) {
+        Ended ended = shell("ulimit -v " + std::to_string(megabytes * 1024) + "; " + line("out.stipple"));
+        INFO(megabytes << " MB: " << ended.said);
+        if (ended.code != cli::success) {
+            ++failed;
+            CHECK(ended.code == cli::outputError);
+            CHECK(ended.says("there is not enough memory"));
+            CHECK(std::count(ended.said.begin(), ended.said.end(), '\n') == 1); // one sentence
+            CHECK_FALSE(fs::exists(output));
+        }
+        if (fs::exists(output + ".work")) {
+            ++kept;
+            CHECK(ended.says("is kept in " + output + ".work"));
+            Ended resumed = shell(line("out.stipple"));
+            CHECK(resumed.says("\"resumed\": true"));
+        }
+        if (fs::exists(output))
+            CHECK((fileBytes(output) == whole));
+        fs::remove(output);
+        CHECK(folder.files() == 2);
+    }
+    CHECK(failed >= 3);
+    CHECK(kept >= 1);
 }

@@ -194,7 +194,7 @@ TEST_CASE("a stopped run is cancelled, one without memory says so", "[schedule]"
         Status full = runScheduled(nodes, before, threads, 1000000, nullptr,
                                    [&](std::size_t) -> Status { throw std::bad_alloc(); });
         REQUIRE_FALSE(full.ok());
-        CHECK(full.error().code == ErrorCode::limitExceeded);
+        CHECK(full.error().code == ErrorCode::outOfMemory);
         CHECK(full.error().advice.find("--memory") != std::string::npos);
     }
 }
