@@ -165,6 +165,7 @@ class Conversion {
         scanning.input = options_.input;
         STIPPLE_TRY(scan, scanInputs(inputs_, scanning));
         STIPPLE_CHECK(refuseKnownSources(scan));
+        STIPPLE_CHECK(refuseLosses(scan, nullptr));
         result_.warnings = scan.warnings;
         result_.seconds.scan = watch_.lap();
         auto folder = WorkFolder::open(workFolderPath(output_, options_), identityOf(scan, output_, options_),
@@ -196,9 +197,9 @@ class Conversion {
                            options_.sizes.pointsPerRound};
         STIPPLE_TRY(tiles, tile(scan, tiling, folder, progress_));
         onDisk_ = tiles.onDisk;
-        result_.dropped = tiles.sums.report;
-        result_.largestRounding = std::max(tiles.sums.report.maxRounding, tiles.sums.maxGridError);
-        STIPPLE_CHECK(checkStrict(tiles.sums, scan));
+        result_.dropped = tiles.sums.report();
+        result_.largestRounding = std::max(result_.dropped.maxRounding, tiles.sums.maxGridError);
+        STIPPLE_CHECK(refuseLosses(scan, &tiles.sums));
         for (const std::string& warning : tiles.sums.warnings(scan))
             result_.warnings.push_back(warning);
         result_.seconds.tile = watch_.lap();
@@ -235,14 +236,28 @@ class Conversion {
         return {};
     }
 
-    Status checkStrict(const PointSums& sums, const Scan& scan) const {
-        if (!options_.strict || sums.report.dropped() == 0)
+    // With --strict: points that the files count but lack (known from the start), or that had to be dropped.
+    Status refuseLosses(const Scan& scan, const PointSums* sums) const {
+        constexpr std::size_t mostNamed = 5;
+        std::string losses;
+        std::size_t files = 0;
+        for (std::size_t i = 0; options_.strict && i < scan.inputs.size(); ++i) {
+            const InputDescription& input = scan.inputs[i].description();
+            std::vector<std::string> texts =
+                sums ? droppedTexts(sums->reports[i]) : std::vector<std::string>{};
+            if (!sums && input.lostPoints > 0)
+                texts.push_back(cat(input.lostPoints, " of the ", input.lostPoints + input.source.pointCount,
+                                    " points that it counts are not in it"));
+            if (texts.empty() || ++files > mostNamed)
+                continue;
+            for (std::size_t t = 0; t < texts.size(); ++t)
+                losses += cat(losses.empty() ? "" : "; ", t == 0 ? cat(input.path, ": ") : "", texts[t]);
+        }
+        if (files == 0)
             return {};
-        std::string reasons;
-        for (const std::string& warning : sums.warnings(scan))
-            if (warning.find(" dropped: ") != std::string::npos)
-                reasons += cat(reasons.empty() ? "" : "; ", warning);
-        return Error{ErrorCode::corrupt, reasons, "", "convert without --strict to leave them out"};
+        if (files > mostNamed)
+            losses += cat("; and ", files - mostNamed, " more inputs lose points");
+        return Error{ErrorCode::corrupt, losses, "", "convert without --strict to leave them out"};
     }
 
     Status pack(const Tiles& tiles, const Built& built, const ScratchFile& blocks) {

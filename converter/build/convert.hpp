@@ -44,7 +44,7 @@ struct ConvertOptions {
     // A cloud that the inputs are added to; may be the output, which is replaced when all is done. A source
     // that it has already (name, points and size) is refused.
     std::string append = {};
-    bool strict = false; // refuse inputs with points that have to be dropped
+    bool strict = false; // refuse inputs with points that have to be dropped, or that are not there
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;
     WorkSizes sizes = {};

@@ -29,7 +29,7 @@ Status readPart(const Scan& scan, const PartRef& ref, PartReader& reader,
                          input.description().path, "try again when the file is complete"};
         STIPPLE_CHECK(take(toCloud(scan, ref.input, reader.raw, reader.mapped, reader.sums)));
     }
-    reader.sums.report.add(stream->report());
+    reader.sums.reports[ref.input].add(stream->report());
     if (points < ref.points && stream->report().dropped() == 0)
         return Error{ErrorCode::changed,
                      cat(ref.points - points, " points fewer came than were counted when it was opened"),

@@ -97,7 +97,15 @@ void PointSums::add(const PointSums& other) {
     hash.add(other.hash);
     colour.extend(other.colour);
     maxGridError = std::max(maxGridError, other.maxGridError);
-    report.add(other.report);
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        reports[i].add(other.reports[i]);
+}
+
+ReadReport PointSums::report() const {
+    ReadReport sum;
+    for (const ReadReport& report : reports)
+        sum.add(report);
+    return sum;
 }
 
 void PointSums::save(ByteWriter& to) const {
@@ -109,7 +117,8 @@ void PointSums::save(ByteWriter& to) const {
     to.write(hash);
     to.write(colour);
     to.write(maxGridError);
-    to.write(report);
+    for (const ReadReport& report : reports)
+        to.write(report);
 }
 
 bool PointSums::load(ByteReader& from) {
@@ -122,7 +131,8 @@ bool PointSums::load(ByteReader& from) {
     hash = from.read<PointHash>();
     colour = from.read<ColourExtremes>();
     maxGridError = from.read<double>();
-    report = from.read<ReadReport>();
+    for (ReadReport& report : reports)
+        report = from.read<ReadReport>();
     return from.ok();
 }
 
@@ -135,18 +145,25 @@ std::vector<std::string> PointSums::warnings(const Scan& scan) const {
     if (maxGridError > 0)
         result.push_back(cat("the inputs' grids have no common one; points moved by at most ", maxGridError,
                              " to fit the finest"));
-    if (report.maxRounding > 0)
-        result.push_back(
-            cat("coordinates were rounded to the cloud's grid, by at most ", report.maxRounding));
+    if (double rounding = report().maxRounding; rounding > 0)
+        result.push_back(cat("coordinates were rounded to the cloud's grid, by at most ", rounding));
+    for (std::size_t i = 0; i < reports.size(); ++i)
+        for (const std::string& text : droppedTexts(reports[i]))
+            result.push_back(cat(scan.inputs[i].description().path, ": ", text));
+    return result;
+}
+
+std::vector<std::string> droppedTexts(const ReadReport& report) {
+    std::vector<std::string> texts;
     auto dropped = [&](std::uint64_t count, const char* why) {
         if (count > 0)
-            result.push_back(cat(count, count == 1 ? " point was" : " points were", " dropped: ", why));
+            texts.push_back(cat(count, count == 1 ? " point was" : " points were", " dropped: ", why));
     };
     dropped(report.notFinite, "a coordinate is no finite number");
     dropped(report.outOfRange, "a coordinate is farther out than a grid can count");
     dropped(report.invalid, "the file marks them as invalid");
     dropped(report.untransformable, "they can't be brought into the cloud's CRS");
-    return result;
+    return texts;
 }
 
 const PointBatch& toCloud(const Scan& scan, std::size_t index, const PointBatch& raw, PointBatch& mapped,

@@ -24,10 +24,11 @@ struct PointSums {
     std::vector<BoxI> inputBounds; // in each input's own integers
     PointHash hash;
     ColourExtremes colour;
-    double maxGridError = 0; // world units; > 0 only where inputs do not fit one grid exactly
-    ReadReport report;       // dropped points by reason
+    double maxGridError = 0;         // world units; > 0 only where inputs do not fit one grid exactly
+    std::vector<ReadReport> reports; // of each input: dropped points by reason
 
-    explicit PointSums(std::size_t inputs = 0) : inputBounds(inputs) {}
+    explicit PointSums(std::size_t inputs = 0) : inputBounds(inputs), reports(inputs) {}
+    ReadReport report() const;        // of all inputs together
     void add(const PointSums& other); // of the same inputs
     // For checkpoints. load() answers false if the bytes are no sums of so many inputs.
     void save(ByteWriter& to) const;
@@ -36,6 +37,9 @@ struct PointSums {
     // What they show of the inputs: headers that lie, points that were moved or dropped; a sentence each.
     std::vector<std::string> warnings(const Scan& scan) const;
 };
+
+// How many points were dropped and why: a sentence for each reason.
+std::vector<std::string> droppedTexts(const ReadReport& report);
 
 // The points of one batch of input `input` on the cloud's grid and in its schema: `raw` itself where nothing
 // changes, else `mapped`, which is overwritten. Adds them to `sums` (not to its hash, nor its report).

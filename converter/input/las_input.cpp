@@ -72,6 +72,7 @@ class LasInput final : public PointInput {
         d.path = path;
         d.source = {std::filesystem::path(path).filename().string(), lasFormatText(header),
                     las.reader->pointCount(), las.source->sizeBytes()};
+        d.lostPoints = header.pointCount - std::min(header.pointCount, las.reader->pointCount());
         d.grid = header.grid;
         d.schema = las.reader->schema();
         d.imposedAttributes = las::schemaOf(header.pointFormat).attributes.size();

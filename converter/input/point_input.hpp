@@ -43,8 +43,10 @@ inline constexpr const char* weekGpsTimeText = "GPS week time";
 struct InputDescription {
     std::string path;  // as given
     SourceFile source; // name, format in words, points to come (dropped ones not counted), size
-    Grid grid;         // scales finite and > 0, offsets finite
-    Schema schema;     // names of LAS where the meaning is that of LAS
+    // Points that the file counts but does not hold: it was cut, or its header lies. Besides those to come.
+    std::uint64_t lostPoints = 0;
+    Grid grid;     // scales finite and > 0, offsets finite
+    Schema schema; // names of LAS where the meaning is that of LAS
     // The first so many of the schema are there because the format can't leave them out (LAS: the fields of
     // the point format), whether or not somebody gave them a value.
     std::size_t imposedAttributes = 0;

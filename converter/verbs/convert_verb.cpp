@@ -182,8 +182,10 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
             "How the points of coarse nodes are chosen: poisson (with a minimum distance; default), "
             "grid (one for each cell) or random")
         ->check(CLI::IsMember(samplings));
-    verb->add_flag("--strict", arguments->options.strict,
-                   "Refuse inputs with points that can't be kept (no number, out of range, marked invalid)");
+    verb->add_flag(
+        "--strict", arguments->options.strict,
+        "Refuse inputs with points that can't be kept (no number, out of range, marked invalid) or "
+        "that were cut off");
     verb->add_option("--progress", arguments->progress,
                      "text, json (one object a line, on standard error) or none")
         ->check(CLI::IsMember({"text", "json", "none"}));

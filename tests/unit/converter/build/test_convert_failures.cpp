@@ -406,3 +406,47 @@ TEST_CASE("where memory runs out, what went to disk stays, and goes on later to 
     CHECK(failed >= 3);
     CHECK(kept >= 1);
 }
+
+TEST_CASE("strict conversions refuse a scan that was cut inside its points", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(1, 1000, 1), folder / "cut.las");
+    fs::resize_file(folder / "cut.las", fs::file_size(folder / "cut.las") - 100 * 28 + 5);
+    writeScan(surfaceScan(1, 50, 2), folder / "whole.las");
+    std::string both = folder / "whole.las " + (folder / "cut.las");
+    Ended lenient = shell(convertLine(both, folder / "out.stipple"));
+    INFO(lenient.said);
+    CHECK(lenient.code == cli::success);
+    CHECK(lenient.says("the header counts 1000 points, but the file ends after 900"));
+    Ended strict = shell(convertLine(both, folder / "strict.stipple") + " --strict");
+    INFO(strict.said);
+    CHECK(strict.code == cli::inputError);
+    CHECK(strict.says(folder / "cut.las: 100 of the 1000 points that it counts are not in it"));
+    CHECK(folder.files() == 3);
+}
+
+TEST_CASE("strict conversions name each file, how many points it loses, and why", "[failures]") {
+    TemporaryFolder folder;
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double "
+                               "y\nproperty double z\nend_header\n";
+    std::ofstream(folder / "a.ply") << header << "1 2 3\nnan 2 3\n4 inf 6\n1e300 5 6\n";
+    std::ofstream(folder / "b.ply") << header << "1 2 3\n4 5 6\n7 8 9\nnan nan nan\n";
+    std::ofstream(folder / "c.ptx")
+        << "2\n1\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+           "0 0 0 0.5\n1 2 3 0.5\n";
+    std::ofstream(folder / "d.ply") << header << "1 2 3\n4 5 6\n7 8 9\n1 1 1\n";
+    Ended strict = shell(convertLine(folder / "*.p*", folder / "out.stipple") + " --strict");
+    INFO(strict.said);
+    CHECK(strict.code == cli::inputError);
+    CHECK(strict.says(folder / "a.ply: 2 points were dropped: a coordinate is no finite number; 1 point was "
+                               "dropped: a coordinate is farther out than a grid can count; " +
+                      (folder / "b.ply: 1 point was dropped: a coordinate is no finite number; ") +
+                      (folder / "c.ptx: 1 point was dropped: the file marks them as invalid (convert without "
+                                "--strict to leave them out)")));
+    CHECK(folder.files() == 4);
+    Ended lenient = shell(convertLine(folder / "*.p*", folder / "out.stipple"));
+    INFO(lenient.said);
+    CHECK(lenient.code == cli::success);
+    CHECK(lenient.says("warning: " +
+                       (folder / "b.ply: 1 point was dropped: a coordinate is no finite number")));
+    CHECK(lenient.says(": 9 points in "));
+}
