@@ -144,7 +144,7 @@ TEST_CASE("conditions are names and ranges") {
             all += "[" + condition.attribute;
             for (const ValueRange& range : condition.ranges)
                 all += " " + std::to_string(static_cast<int>(range.min)) + "-" +
-                         std::to_string(static_cast<int>(range.max));
+                       std::to_string(static_cast<int>(range.max));
             all += "]";
         }
         return all;
