@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 packages=(
   g++ cmake ninja-build ccache pkg-config clang-format git ca-certificates
-  libboost1.81-dev libssl-dev openssl libzstd-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libtbb-dev
+  libboost1.81-dev libssl-dev openssl prometheus-cpp-dev libzstd-dev nlohmann-json3-dev libcli11-dev libfmt-dev libspdlog-dev libtbb-dev
   libproj-dev proj-data libgeotiff-dev libpugixml-dev libpng-dev libwebp-dev libegl-dev libgles-dev libegl1 libgles2 libgl1-mesa-dri
   catch2 emscripten chromium zstd
 )

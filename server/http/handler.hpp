@@ -2,10 +2,12 @@
 #pragma once
 
 #include "server/http/job.hpp"
+#include "server/http/measurement.hpp"
 #include "server/http/message.hpp"
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace stipple::server {
 
@@ -22,6 +24,9 @@ class RequestHandler {
 
     // Who sent the request, for the log; empty: nobody in particular.
     virtual std::string userOf(const HttpRequest&) const { return {}; }
+
+    // What /metrics shows beside the server's own: caches, and the like.
+    virtual std::vector<Measurement> measurements() const { return {}; }
 };
 
 } // namespace stipple::server

@@ -3,6 +3,7 @@
 #include "server/http/problem.hpp"
 #include "server/net/client_address.hpp"
 #include "server/net/job_answer.hpp"
+#include "server/net/operations.hpp"
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
@@ -119,18 +120,23 @@ int Connection::look() {
 
 void Connection::startExchange(int status) {
     phase_ = Phase::answering;
-    allow(limits_.noProgress);
+    loop_.metrics().began();
     exchange_.begin = Clock::now();
+    deadline_ = exchange_.begin + limits_.noProgress;
     exchange_.job.clear();
     exchange_.status = 499;
     exchange_.outcome = {};
     exchange_.keepsAlive = false;
     if (status != headerRead) {
+        exchange_.request = {}; // may still be the one before
         answer_ = unreadable(status);
         return;
     }
     exchange_.keepsAlive = wantsKeepAlive(exchange_.request);
-    answer_ = loop_.state().handler->answer(exchange_.request, std::time(nullptr));
+    if (auto own = answerOperations(exchange_.request, loop_.state(), peer_))
+        answer_ = std::move(*own);
+    else
+        answer_ = loop_.state().handler->answer(exchange_.request, std::time(nullptr));
 }
 
 HttpResponse Connection::unreadable(int status) const {
@@ -208,7 +214,11 @@ Task<void> Connection::answerJob(Job job) {
 }
 
 bool Connection::endExchange() {
-    log();
+    Clock::time_point now = Clock::now();
+    double seconds = std::chrono::duration<double>(now - exchange_.begin).count();
+    loop_.metrics().ended({exchange_.request.target, exchange_.status, exchange_.outcome.bodyBytes, seconds,
+                           exchange_.outcome.isComplete});
+    log(seconds);
     answer_ = HttpResponse(); // closes its files
     if (!exchange_.outcome.isComplete) {
         stream_.reset(); // short of Content-Length or of the last chunk, which is how the client sees it
@@ -217,7 +227,7 @@ bool Connection::endExchange() {
     received_.begin += std::min(scan_.endBytes(), received_.view().size());
     scan_ = HeaderScan();
     phase_ = Phase::header;
-    allow(received_.begin == received_.end ? limits_.idle : limits_.header);
+    deadline_ = now + (received_.begin == received_.end ? limits_.idle : limits_.header);
     return exchange_.keepsAlive;
 }
 
@@ -229,7 +239,7 @@ net::ip::address Connection::client() const {
     return forwardedClient(exchange_.request.field("X-Forwarded-For").value_or(""), peer_, trusted);
 }
 
-void Connection::log() const {
+void Connection::log(double seconds) const {
     ServerState& state = loop_.state();
     if (!state.log)
         return;
@@ -247,7 +257,7 @@ void Connection::log() const {
     record.job = exchange_.job;
     record.status = exchange_.status;
     record.bodyBytes = exchange_.outcome.bodyBytes;
-    record.milliseconds = duration<double, std::milli>(Clock::now() - exchange_.begin).count();
+    record.milliseconds = seconds * 1000;
     record.isComplete = exchange_.outcome.isComplete;
     state.log(record);
 }

@@ -62,7 +62,7 @@ class Connection {
     Task<void> closeGently();
     HttpResponse unreadable(int status) const;
     net::ip::address client() const;
-    void log() const;
+    void log(double seconds) const;
     void allow(std::chrono::milliseconds time) { deadline_ = Clock::now() + time; }
 
     Loop& loop_;

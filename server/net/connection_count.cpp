@@ -6,6 +6,7 @@ bool ConnectionCount::add(const std::string& group, int limit) {
     std::lock_guard lock(mutex_);
     int& count = ofGroup_[group];
     if (count >= limit) {
+        ++refused_;
         if (count == 0)
             ofGroup_.erase(group);
         return false;
@@ -27,6 +28,11 @@ void ConnectionCount::remove(const std::string& group) {
 int ConnectionCount::all() const {
     std::lock_guard lock(mutex_);
     return all_;
+}
+
+std::uint64_t ConnectionCount::refused() const {
+    std::lock_guard lock(mutex_);
+    return refused_;
 }
 
 void ConnectionCount::close() {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <unordered_map>
@@ -15,6 +16,7 @@ class ConnectionCount {
     bool add(const std::string& group, int limit);
     void remove(const std::string& group);
     int all() const;
+    std::uint64_t refused() const; // times that add() said no
 
     // No connection will be added any more.
     void close();
@@ -26,6 +28,7 @@ class ConnectionCount {
     std::condition_variable changed_;
     std::unordered_map<std::string, int> ofGroup_; // without zeros
     int all_ = 0;
+    std::uint64_t refused_ = 0;
     bool isClosed_ = false;
 };
 

@@ -4,6 +4,7 @@
 
 #include "server/net/asio.hpp"
 #include "server/net/connection_count.hpp"
+#include "server/net/request_metrics.hpp"
 #include "server/net/response_sender.hpp"
 #include "server/net/server.hpp"
 
@@ -34,6 +35,8 @@ struct ServerState {
     std::shared_ptr<const TlsContext> tlsContext;
     ConnectionCount connections;
     std::vector<net::ip::address> trustedProxies;
+    std::vector<const RequestMetrics*> metrics; // one of each loop; complete before any runs
+    MetricsFor metricsFor = MetricsFor::nobody;
     std::atomic<bool> isEnding{false}; // every answer is the last of its connection
 };
 
@@ -57,6 +60,7 @@ class Loop {
     void adopt(Socket socket, std::string countedFor); // a group of ServerState::connections; empty: none
     bool isStopping() const { return isStopping_; }
     BufferPool& buffers() { return buffers_; }
+    RequestMetrics& metrics() { return metrics_; } // its totals: from any thread
 
   private:
     Task<void> serve(std::unique_ptr<Connection> connection, std::string countedFor);
@@ -69,6 +73,7 @@ class Loop {
     Timer sweepTimer_;
     std::set<Connection*> connections_;
     BufferPool buffers_;
+    RequestMetrics metrics_;
     bool isStopping_ = false;
     std::thread thread_;
 };

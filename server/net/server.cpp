@@ -50,10 +50,13 @@ class BeastServer final : public Server {
         state_.limits.connections = affordableConnections(options.limits.connections);
         state_.handler = std::move(handler);
         state_.log = std::move(log);
+        state_.metricsFor = options.metrics;
         int cores = static_cast<int>(std::thread::hardware_concurrency());
         int threads = options.threads > 0 ? options.threads : std::clamp(cores, 1, 8);
         for (int i = 0; i < threads; ++i)
             loops_.push_back(std::make_unique<Loop>(state_));
+        for (auto& loop : loops_)
+            state_.metrics.push_back(&loop->metrics());
         acceptor_ = std::make_unique<Acceptor>(loops_.front()->context());
         pause_ = std::make_unique<Timer>(loops_.front()->context());
     }

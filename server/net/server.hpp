@@ -39,6 +39,13 @@ struct ServerLimits {
     JobLimits jobs;
 };
 
+// Who may read /metrics, which names every cloud that was asked for, private ones, too.
+enum class MetricsFor {
+    nobody,
+    thisMachine, // clients with a loopback address, but not what a proxy says it passes on
+    everyone,
+};
+
 struct ServerOptions {
     std::string host = "127.0.0.1"; // address or name; loopback: nobody else can connect
     std::uint16_t port = 0;         // 0: any free one
@@ -46,6 +53,7 @@ struct ServerOptions {
     // Proxies whose X-Forwarded-For is believed, and whose connections are not limited; addresses.
     std::vector<std::string> trustedProxies;
     std::string certificatePath, keyPath; // PEM; both: https, neither: http
+    MetricsFor metrics = MetricsFor::nobody;
     ServerLimits limits;
 };
 

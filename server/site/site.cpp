@@ -132,4 +132,26 @@ HttpResponse Site::answerFile(const HttpRequest& request, const std::string& id,
         nowSeconds);
 }
 
+std::vector<Measurement> Site::measurements() const {
+    std::vector<Measurement> all{
+        {"stipple_build_info", "1; the label says which version", false, 1, {{"version", STIPPLE_VERSION}}},
+        {"stipple_clouds", "Clouds that are offered", false, static_cast<double>(catalog_->ids().size())}};
+    auto addCache = [&all](const char* name, const CacheCounts& counts) {
+        auto add = [&](const char* what, const char* help, bool isCounter, std::uint64_t value) {
+            all.push_back({cat("stipple_cache_", what),
+                           help,
+                           isCounter,
+                           static_cast<double>(value),
+                           {{"cache", name}}});
+        };
+        add("hits_total", "Values that were there", true, counts.hits);
+        add("misses_total", "Values that were made", true, counts.misses);
+        add("waits_total", "Values that another request was making already", true, counts.waits);
+        add("evicted_total", "Values that left for others", true, counts.evicted);
+        add("bytes", "Held", false, counts.bytes);
+    };
+    addCache("hierarchy", resources_->hierarchy.counts());
+    return all;
+}
+
 } // namespace stipple::server

@@ -34,6 +34,7 @@ class Site final : public RequestHandler {
 
     Answer answer(const HttpRequest& request, std::int64_t nowSeconds) const override;
     void complete(const HttpRequest& request, HttpResponse& response) const override;
+    std::vector<Measurement> measurements() const override; // clouds, caches, and which version this is
     std::string userOf(const HttpRequest& request) const override; // the name of its token
     const CloudCatalog& catalog() const { return *catalog_; }
     AccessControl* access() const { return access_.get(); } // null: every cloud is public

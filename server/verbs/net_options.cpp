@@ -1,6 +1,7 @@
 #include "server/verbs/net_options.hpp"
 
 #include <chrono>
+#include <map>
 #include <string>
 
 namespace stipple::server {
@@ -64,6 +65,12 @@ void addNetOptions(CLI::App& verb, ServerOptions& options) {
     CLI::Option* key = verb.add_option("--key", options.keyPath, "PEM file of the certificate's private key");
     certificate->needs(key);
     key->needs(certificate);
+    const std::map<std::string, MetricsFor> readers{
+        {"off", MetricsFor::nobody}, {"local", MetricsFor::thisMachine}, {"all", MetricsFor::everyone}};
+    verb.add_option("--metrics", options.metrics,
+                    "Who may read /metrics (Prometheus): off, local (clients of this machine) or all")
+        ->transform(CLI::CheckedTransformer(readers))
+        ->default_str("off");
     verb.add_option(
         "--trust-proxy", options.trustedProxies,
         "Addresses of proxies that name their clients in X-Forwarded-For; their connections are not "
