@@ -1,5 +1,5 @@
-// A number that /metrics shows, by Prometheus' rules: names in snake_case with their unit at the end, counters
-// end in _total and never fall.
+// A number that /metrics shows, by Prometheus' rules: names in snake_case with their unit at the end,
+// counters end in _total and never fall.
 #pragma once
 
 #include <string>
