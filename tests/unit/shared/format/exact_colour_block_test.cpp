@@ -134,7 +134,7 @@ TEST_CASE("colours of 16 bits are shown in 8, and an intensity in all of its own
                                        static_cast<std::uint16_t>(i * 300 + 1));
     for (std::uint16_t& value : shown)
         value = static_cast<std::uint16_t>(value * 250 + 3);
-    auto shownBy = [&](const CloudMetadata& m, const Values& given) {
+    auto shownBy = [&, &points = points](const CloudMetadata& m, const Values& given) {
         MemorySource source(fileOf(m, need(encodeNode(m, {}, points, given))));
         auto reader = need(CloudReader::open(source));
         NodeEntry entry = onlyNode(*reader);
