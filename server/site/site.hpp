@@ -19,18 +19,19 @@
 
 namespace stipple::server {
 
-inline constexpr std::size_t maxTargetBytes = 4096; // longer: 414
+inline constexpr std::size_t maxTargetBytes = 8192; // longer: 414; polygons of some 400 corners fit
 
 struct SiteOptions {
     std::unique_ptr<AccessControl> access; // null: every cloud is public
     CorsRules cors;
+    ApiLimits api = {};
 };
 
 class Site final : public RequestHandler {
   public:
     Site(std::unique_ptr<CloudCatalog> catalog, Page page, SiteOptions options = {})
-        : catalog_(std::move(catalog)), page_(std::move(page)), access_(std::move(options.access)),
-          cors_(std::move(options.cors)) {}
+        : catalog_(std::move(catalog)), resources_(std::make_unique<ApiResources>(options.api)),
+          page_(std::move(page)), access_(std::move(options.access)), cors_(std::move(options.cors)) {}
 
     Answer answer(const HttpRequest& request, std::int64_t nowSeconds) const override;
     void complete(const HttpRequest& request, HttpResponse& response) const override;
@@ -47,7 +48,7 @@ class Site final : public RequestHandler {
     HttpResponse answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const;
 
     std::unique_ptr<CloudCatalog> catalog_;
-    std::unique_ptr<ApiResources> resources_ = std::make_unique<ApiResources>();
+    std::unique_ptr<ApiResources> resources_;
     Page page_;
     std::unique_ptr<AccessControl> access_;
     CorsRules cors_;

@@ -2,6 +2,35 @@
 
 namespace stipple::server {
 
+namespace {
+
+// "2G" is 2 × 2^30.
+CLI::Option* addBytes(CLI::App& verb, const char* name, std::uint64_t& bytes, const char* help) {
+    return verb.add_option(name, bytes, help)->transform(CLI::AsSizeValue(false))->group("Limits");
+}
+
+void addApiOptions(CLI::App& verb, ApiLimits& limits) {
+    verb.add_option("--answer-points", limits.points.maxPoints,
+                    "Points that one answer of /points or /profile may have; more are refused (400)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 53))
+        ->capture_default_str()
+        ->group("Limits");
+    addBytes(verb, "--answer-bytes", limits.points.maxBytes,
+             "Bytes that one such answer may have (default: 8G); more are refused, or the answer is cut");
+    verb.add_option("--answer-threads", limits.points.threads, "Threads that work on one such answer")
+        ->check(CLI::Range(1, 64))
+        ->capture_default_str()
+        ->group("Limits");
+    addBytes(verb, "--temp-bytes", limits.scratchBytes,
+             "Bytes of all answers that are made as files (LAZ) and not sent yet (default: 16G); more: 503");
+    verb.add_option("--temp", limits.scratchFolder,
+                    "Folder for them (default: the system's for temporary files)")
+        ->check(CLI::ExistingDirectory)
+        ->group("Limits");
+}
+
+} // namespace
+
 void addSiteOptions(CLI::App& verb, ChosenSite& chosen) {
     verb.add_option("--page", chosen.pageFolder, "Folder of the built page");
     verb.add_option("--access", chosen.accessFile,
@@ -15,6 +44,7 @@ void addSiteOptions(CLI::App& verb, ChosenSite& chosen) {
                               ->check(CLI::IsMember({"combined", "json"}));
     verb.add_option("--log-file", chosen.logFile, "Append the log to this file, not to standard error")
         ->needs(format);
+    addApiOptions(verb, chosen.api);
 }
 
 Result<SiteOptions> siteOptions(const ChosenSite& chosen) {
@@ -25,6 +55,7 @@ Result<SiteOptions> siteOptions(const ChosenSite& chosen) {
     }
     STIPPLE_TRY(cors, CorsRules::listing(chosen.origins));
     options.cors = std::move(cors);
+    options.api = chosen.api;
     return options;
 }
 

@@ -15,6 +15,7 @@ struct ChosenSite {
     std::string pageFolder; // empty: the built page beside the program or in the source tree
     std::string accessFile; // empty: every cloud is public
     std::vector<std::string> origins;
+    ApiLimits api;
     std::string logFormat, logFile; // format empty: no log; file empty: standard error
 };
 
