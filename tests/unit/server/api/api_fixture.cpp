@@ -59,6 +59,12 @@ ApiFixture::ApiFixture(const SmallCloudOptions& options, const ApiLimits& limits
     catalog_ = std::move(opened->catalog);
 }
 
+ApiFixture::ApiFixture(const std::string& path, const ApiLimits& limits) : resources_(limits) {
+    auto opened = CloudCatalog::open({path});
+    REQUIRE(opened.ok());
+    catalog_ = std::move(opened->catalog);
+}
+
 ApiAnswer ApiFixture::ask(const std::string& target, Fields fields, std::string_view method) const {
     HttpRequest request{method, target, 11, std::move(fields)};
     auto parsed = parseTarget(request.target);

@@ -28,6 +28,9 @@ class ApiFixture {
   public:
     explicit ApiFixture(const SmallCloudOptions& options = {}, const server::ApiLimits& limits = {});
 
+    // Over a cloud that is there already; its id is the file's stem.
+    explicit ApiFixture(const std::string& path, const server::ApiLimits& limits = {});
+
     using Fields = std::vector<std::pair<std::string_view, std::string_view>>;
     // The whole answer; a job is run to its end on this thread.
     ApiAnswer ask(const std::string& target, Fields fields = {}, std::string_view method = "GET") const;
