@@ -15,7 +15,8 @@ void addServeVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("PATH", options->paths, ".stipple files, or folders that hold some")->required();
     server::addServingOptions(*verb, options->serving);
     verb->footer("Addresses: / the page, /api/v1/clouds the list, /api/v1/clouds/ID one cloud's metadata,\n"
-                 "/clouds/ID.stipple its file, in byte ranges.\n"
+                 "/clouds/ID.stipple its file, in byte ranges;\n"
+                 "/api/v1/clouds/ID/points, /profile and /nearest its points (docs/API.md).\n"
                  "Example: stipple serve scans/ --port 8017");
     verb->callback([options, &action] {
         action = [options] {
