@@ -7,7 +7,7 @@
 namespace stipple {
 
 namespace {
-constexpr int densest = Spacing::densest, thinnest = 2;
+constexpr int thinnest = 2;
 constexpr double maxScaleRatio = 100;
 // Of the cells, one minimum distance wide, that points lie in, so many get a point. Poisson: about 0.42 on
 // surfaces (measured on airborne and indoor scans), 0.7 and more where points fill a volume.
