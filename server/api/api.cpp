@@ -71,7 +71,7 @@ Answer answerApi(const HttpRequest& request, const Target& target, const ApiCont
 
     ApiCall call{request,         *query,          std::move(names), "", nullptr, nowSeconds,
                  context.visitor, context.catalog, context.resources};
-    if (endpoint->path.starts_with("/clouds/{id}")) {
+    if (endpoint->isOfCloud()) {
         call.id = call.names.front();
         auto cloud = context.catalog.current(call.id);
         if (!cloud)

@@ -26,4 +26,7 @@ Answer answerApi(const HttpRequest& request, const Target& target, const ApiCont
 
 std::span<const Endpoint> endpoints();
 
+// /openapi.json: all of them, as an OpenAPI 3.1 document (openapi_document.hpp).
+Answer answerOpenApi(const ApiCall& call);
+
 } // namespace stipple::server

@@ -1,5 +1,6 @@
 #include "server/api/batch_endpoint.hpp"
 
+#include "server/api/points_request.hpp"
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
 
@@ -39,8 +40,7 @@ Result<WantedNode> wantedNode(std::string_view text, int strata) {
 Result<std::vector<WantedNode>> wantedNodes(const ApiCall& call, int strata) {
     const std::string* keys = call.query.find(keysParameter.name);
     if (!keys)
-        return parameterError(keysParameter.name, "it is missing",
-                              "name the nodes, such as keys=0-0-0-0,1-0-0-0");
+        return missingParameter(keysParameter);
     std::vector<WantedNode> nodes;
     for (std::string_view text : splitAt(*keys, ',')) {
         if (nodes.size() == maxBatchKeys)
@@ -147,7 +147,7 @@ Result<Batch> batchOf(const ApiCall& call) {
 Answer answerBatch(const ApiCall& call) {
     auto batch = batchOf(call);
     if (!batch)
-        return parameterProblem(batch.error());
+        return requestProblem(batch.error());
     if (batch->validity.conditional)
         return *batch->validity.conditional;
     HierarchyCache& hierarchy = call.resources.hierarchy;

@@ -31,6 +31,7 @@ inline constexpr Parameter keysParameter{
                    "node, whatever the parameter strata says.",
     .example = "0-0-0-0",
     .isRequired = true,
+    .pattern = "^\\d+-\\d+-\\d+-\\d+(:[1-4])?(,\\d+-\\d+-\\d+-\\d+(:[1-4])?)*$",
 };
 inline constexpr std::array batchParameters{keysParameter, strataParameter, attributesParameter,
                                             versionParameter};

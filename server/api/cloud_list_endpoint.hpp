@@ -13,11 +13,12 @@ Answer answerClouds(const ApiCall& call);
 inline constexpr std::size_t usualCloudsInList = 100, mostCloudsInList = 1000;
 inline constexpr Parameter cloudListParameters[] = {
     {.name = "limit",
-     .description = "How many clouds at most, 100 if it is not given.",
+     .description = "How many clouds at most.",
      .kind = ParameterKind::count,
      .least = 1,
      .most = mostCloudsInList,
-     .example = "10"},
+     .example = "10",
+     .usual = "100"},
     {.name = "after",
      .description = "Id behind which to go on; `next` of the answer has the address of what follows. From "
                     "the first if it is not given.",

@@ -7,6 +7,7 @@
 #include "server/api/parameter.hpp"
 #include "server/http/job.hpp"
 #include "server/http/message.hpp"
+#include "server/http/negotiation.hpp"
 #include "server/site/cloud_catalog.hpp"
 
 #include <cstdint>
@@ -37,7 +38,16 @@ struct ApiCall {
 struct Endpoint {
     std::string_view path; // below /api/v1: "/clouds/{id}/nodes/{key}"
     Answer (*answer)(const ApiCall& call);
+    std::string_view name;                      // for programs that make functions of it: "getNode"
+    std::string_view summary;                   // what it answers, in a sentence
     std::span<const Parameter> parameters = {}; // of the query; others are refused
+    std::span<const Format> formats = {};       // the first one where the request names none
+    std::string_view schema = {};               // of JSON among them (openapi_schemas.hpp)
+    std::string_view example = {};              // query that any cloud answers
+    bool isWork = true;                         // may be made by a job: 429 where its client has too many
+    bool hasRanges = false;                     // 206, 416
+
+    bool isOfCloud() const { return path.starts_with("/clouds/{id}"); }
 };
 
 } // namespace stipple::server

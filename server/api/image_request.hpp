@@ -32,95 +32,111 @@ inline constexpr double farthest = 1e150; // squares stay finite
 
 inline constexpr Parameter view{.name = "view",
                                 .description =
-                                    "A camera that shows the whole cloud; \"iso\" if no camera is given.",
+                                    "A camera that shows the whole cloud, if no other camera is given.",
                                 .kind = ParameterKind::choice,
                                 .choices = views,
-                                .example = "top"};
+                                .example = "top",
+                                .usual = "iso"};
 inline constexpr Parameter eye{
     .name = "eye",
     .description = "Where the camera is, in the cloud's coordinates. With target in place of view.",
     .kind = ParameterKind::numbers,
     .form = "x,y,z",
-    .example = "0,0,1000"};
+    .example = "0,0,1000",
+    .needs = "target=10,20,0"};
 inline constexpr Parameter target{.name = "target",
                                   .description = "What the camera looks at.",
                                   .kind = ParameterKind::numbers,
                                   .form = "x,y,z",
-                                  .example = "10,20,0"};
+                                  .example = "10,20,0",
+                                  .needs = "eye=0,0,1000"};
 inline constexpr Parameter up{.name = "up",
-                              .description = "The direction that is up in the picture; 0,0,1 if not given.",
+                              .description = "The direction that is up in the picture.",
                               .kind = ParameterKind::numbers,
                               .form = "x,y,z",
-                              .example = "0,1,0"};
+                              .example = "0,1,0",
+                              .usual = "0,0,1",
+                              .needs = "eye=0,100,1000&target=10,20,0"};
 inline constexpr Parameter projection{.name = "projection",
-                                      .description = "\"perspective\" if not given.",
+                                      .description = "Perspective, or parallel.",
                                       .kind = ParameterKind::choice,
                                       .choices = projections,
-                                      .example = "orthographic"};
+                                      .example = "orthographic",
+                                      .usual = "perspective"};
 inline constexpr Parameter fov{
     .name = "fov",
-    .description =
-        "Field of view from top to bottom in degrees, of a perspective camera with eye; 60 if not given.",
+    .description = "Field of view from top to bottom in degrees, of a perspective camera with eye.",
     .kind = ParameterKind::number,
     .least = 0.001,
     .most = 179,
-    .example = "45"};
+    .example = "45",
+    .usual = "60",
+    .needs = "eye=0,100,1000&target=10,20,0"};
 inline constexpr Parameter orthoHeight{
     .name = "orthoHeight",
     .description = "Height of the view in the cloud's units, of an orthographic camera with eye.",
     .kind = ParameterKind::number,
     .least = 1e-150,
     .most = farthest,
-    .example = "500"};
+    .example = "500",
+    .needs = "projection=orthographic&eye=0,100,1000&target=10,20,0"};
 inline constexpr Parameter width{.name = "width",
-                                 .description =
-                                     "Pixels; 1280 if not given. Width times height is at most 8388608.",
+                                 .description = "Pixels. Width times height is at most 8388608.",
                                  .kind = ParameterKind::count,
                                  .least = 1,
                                  .most = maxImageSide,
-                                 .example = "64"};
+                                 .example = "64",
+                                 .usual = "1280"};
 inline constexpr Parameter height{.name = "height",
-                                  .description = "Pixels; 720 if not given.",
+                                  .description = "Pixels.",
                                   .kind = ParameterKind::count,
                                   .least = 1,
                                   .most = maxImageSide,
-                                  .example = "48"};
+                                  .example = "48",
+                                  .usual = "720"};
 inline constexpr Parameter mode{.name = "mode",
-                                .description = "What colours points; \"rgb\" if not given.",
+                                .description = "What colours points.",
                                 .kind = ParameterKind::choice,
                                 .choices = modes,
-                                .example = "elevation"};
+                                .example = "elevation",
+                                .usual = "rgb"};
 inline constexpr Parameter gradient{.name = "gradient",
-                                    .description = "Of intensity and elevation; \"viridis\" if not given.",
+                                    .description = "Of intensity and elevation.",
                                     .kind = ParameterKind::choice,
                                     .choices = gradients,
-                                    .example = "turbo"};
+                                    .example = "turbo",
+                                    .usual = "viridis"};
 inline constexpr Parameter pointSize{.name = "pointSize",
-                                     .description = "Diameter of points in pixels; 2 if not given.",
+                                     .description = "Diameter of points in pixels.",
                                      .kind = ParameterKind::number,
                                      .least = 0.01,
                                      .most = 64,
-                                     .example = "3"};
+                                     .example = "3",
+                                     .usual = "2"};
 inline constexpr Parameter pointShape{.name = "pointShape",
-                                      .description = "\"circle\" if not given.",
+                                      .description = "The shape of points.",
                                       .kind = ParameterKind::choice,
                                       .choices = shapes,
-                                      .example = "square"};
+                                      .example = "square",
+                                      .usual = "circle"};
 inline constexpr Parameter edl{.name = "edl",
-                               .description = "Eye-dome lighting; \"on\" if not given.",
+                               .description = "Eye-dome lighting.",
                                .kind = ParameterKind::choice,
                                .choices = switches,
-                               .example = "off"};
+                               .example = "off",
+                               .usual = "on"};
 inline constexpr Parameter background{.name = "background",
-                                      .description =
-                                          "Six hexadecimal digits, red first; 181a1e if not given.",
-                                      .example = "ffffff"};
+                                      .description = "Six hexadecimal digits, red first.",
+                                      .example = "ffffff",
+                                      .usual = "181a1e",
+                                      .pattern = "^[0-9A-Fa-f]{6}$"};
 inline constexpr Parameter budget{.name = "budget",
-                                  .description = "Points drawn at most; 2000000 if not given.",
+                                  .description = "Points drawn at most.",
                                   .kind = ParameterKind::count,
                                   .least = 1,
                                   .most = static_cast<double>(maxImagePoints),
-                                  .example = "10000"};
+                                  .example = "10000",
+                                  .usual = "2000000"};
 inline constexpr Parameter format{.name = "format",
                                   .description = "The format of the answer; goes before the field Accept.",
                                   .kind = ParameterKind::choice,

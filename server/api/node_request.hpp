@@ -14,12 +14,13 @@ namespace stipple::server {
 inline constexpr Parameter strataParameter{
     .name = "strata",
     .description =
-        "How many of a node's four strata: an eighth, a quarter, a half or (if not given) all of its "
-        "points, each spread evenly over the node.",
+        "How many of a node's four strata: an eighth, a quarter, a half or all of its points, each spread "
+        "evenly over the node.",
     .kind = ParameterKind::count,
     .least = 1,
     .most = strataCount,
     .example = "2",
+    .usual = "4",
 };
 inline constexpr Parameter attributesParameter{
     .name = "attributes",

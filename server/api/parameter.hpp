@@ -28,6 +28,9 @@ struct Parameter {
     std::span<const std::string_view> choices = {}; // choice
     std::string_view example = {};                  // a value that any cloud answers
     bool isRequired = false;
+    std::string_view usual = {};   // what is meant where it is not given, written as it would be; empty: none
+    std::string_view needs = {};   // others that have to be given with it, as a query: "size=2,2"
+    std::string_view pattern = {}; // text: a regular expression (ECMA-262) that every value matches
 };
 
 // The getters of Query by a row.

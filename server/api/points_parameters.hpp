@@ -26,26 +26,34 @@ inline constexpr Parameter centerParameter{
         "Points in a box that is turned, its sides included: its centre; without z, a box of any height.",
     .kind = ParameterKind::numbers,
     .form = "x,y,z|x,y",
+    .example = "0,0",
+    .needs = "size=1e6,1e6",
 };
 inline constexpr Parameter sizeParameter{
     .name = "size",
     .description = "The full sizes of the box around `center`, along its own axes.",
     .kind = ParameterKind::numbers,
     .form = "dx,dy,dz|dx,dy",
+    .example = "2e7,2e7",
+    .needs = "center=0,0",
 };
 inline constexpr Parameter rotationParameter{
     .name = "rotation",
     .description =
         "How the box around `center` is turned: degrees counter-clockwise about z, or a quaternion (x, y, z, "
-        "w; of any length). Not at all if not given.",
+        "w; of any length).",
     .kind = ParameterKind::numbers,
     .form = "degrees|x,y,z,w",
+    .example = "30",
+    .usual = "0",
+    .needs = "center=0,0&size=2e7,2e7",
 };
 inline constexpr Parameter polygonParameter{
     .name = "polygon",
     .description =
         "Points in a region of the plane, its edges included: GeoJSON (Polygon, MultiPolygon, features of "
         "them), well-known text (POLYGON, MULTIPOLYGON), or the corners x,y;x,y;…",
+    .example = "-1e7,-1e7;1e7,-1e7;0,1e7",
 };
 inline constexpr Parameter minZParameter{
     .name = "minz",
@@ -53,6 +61,7 @@ inline constexpr Parameter minZParameter{
     .kind = ParameterKind::number,
     .least = -largestLength,
     .most = largestLength,
+    .example = "1.5",
 };
 inline constexpr Parameter maxZParameter{
     .name = "maxz",
@@ -60,10 +69,13 @@ inline constexpr Parameter maxZParameter{
     .kind = ParameterKind::number,
     .least = -largestLength,
     .most = largestLength,
+    .example = "1000",
 };
 inline constexpr Parameter classParameter{
     .name = "class",
-    .description = "Points of these classes: numbers and ranges, such as 2,6 or 3-5.",
+    .description = "Points of these classes: numbers and ranges, such as 2,6 or 3-5. Of clouds that have "
+                   "the attribute Classification.",
+    .example = "2,6-9",
 };
 inline constexpr Parameter whereParameter{
     .name = "where",
@@ -71,6 +83,7 @@ inline constexpr Parameter whereParameter{
         "Points whose values lie in ranges: Attribute:low..high, several ranges joined by commas, several "
         "attributes by semicolons; either limit may be left out, and one value is a range. Of scaled "
         "attributes, the values they mean.",
+    .example = "Intensity:10..20000,30000..",
 };
 inline constexpr Parameter spacingParameter{
     .name = "spacing",
@@ -80,6 +93,7 @@ inline constexpr Parameter spacingParameter{
     .kind = ParameterKind::number,
     .least = smallestLength,
     .most = largestLength,
+    .example = "2.5",
 };
 inline constexpr Parameter limitParameter{
     .name = "limit",
@@ -119,12 +133,16 @@ inline constexpr Parameter originParameter{
     .description = "Instead of `point`: the first points along a ray that begins here.",
     .kind = ParameterKind::numbers,
     .form = "x,y,z",
+    .example = "0,0,900",
+    .needs = "direction=0,0,-1&radius=100",
 };
 inline constexpr Parameter directionParameter{
     .name = "direction",
     .description = "Where the ray goes; its length does not count.",
     .kind = ParameterKind::numbers,
     .form = "dx,dy,dz",
+    .example = "0,0,-1",
+    .needs = "origin=0,0,900&radius=100",
 };
 inline constexpr Parameter radiusParameter{
     .name = "radius",
@@ -132,6 +150,8 @@ inline constexpr Parameter radiusParameter{
     .kind = ParameterKind::number,
     .least = 0,
     .most = largestLength,
+    .example = "3",
+    .needs = "origin=0,0,900&direction=0,0,-1",
 };
 inline constexpr Parameter angleParameter{
     .name = "angle",
@@ -140,6 +160,8 @@ inline constexpr Parameter angleParameter{
     .kind = ParameterKind::number,
     .least = 0,
     .most = 80,
+    .example = "0.5",
+    .needs = "origin=0,0,900&direction=0,0,-1",
 };
 inline constexpr Parameter maxDistanceParameter{
     .name = "maxdistance",
@@ -147,14 +169,16 @@ inline constexpr Parameter maxDistanceParameter{
     .kind = ParameterKind::number,
     .least = 0,
     .most = largestLength,
+    .example = "1e7",
 };
 inline constexpr Parameter countParameter{
     .name = "count",
-    .description = "How many points; one if not given.",
+    .description = "How many points.",
     .kind = ParameterKind::count,
     .least = 1,
     .most = 1000,
     .example = "3",
+    .usual = "1",
 };
 
 inline constexpr std::array pointFileFormats{lasFormat, lazFormat, csvFormat, plyFormat};
@@ -164,6 +188,7 @@ inline constexpr Parameter pointFormatParameter{
     .description = "The format; if not given, what the field Accept wants most, else LAS.",
     .kind = ParameterKind::choice,
     .choices = pointFileFormatNames,
+    .example = "csv",
 };
 
 inline constexpr std::array pointsParameters{
