@@ -3,6 +3,7 @@
 #include "client/bench/report.hpp"
 #include "client/core/json.hpp"
 #include "shared/base/text.hpp"
+#include "shared/cli/number_check.hpp"
 #include "shared/cli/verb.hpp"
 #include "shared/io/output_file.hpp"
 
@@ -192,7 +193,7 @@ void addBenchVerb(CLI::App& program, cli::Action& action) {
                      "Further paths: a JSON file {\"paths\": [{\"name\": \"…\", \"cameras\": [{…}]}]}; alone "
                      "without --paths");
     verb->add_option("--frames", options.frames, "Of each of the paths that are named")
-        ->check(CLI::Range(1, 10000))
+        ->check(cli::wholeNumber(1, 10000))
         ->capture_default_str();
     verb->add_option("--modes", words->modes, "Ways of drawing (default: all)")->delimiter(',');
     verb->add_option("--modes-file", words->modesFile, "Further modes: a JSON list; alone without --modes");
@@ -204,13 +205,13 @@ void addBenchVerb(CLI::App& program, cli::Action& action) {
         ->capture_default_str();
     verb->add_option("--size", words->size, "Width and height in pixels")->capture_default_str();
     verb->add_option("--repeats", options.repeats, "Warm passes along each path that times are medians of")
-        ->check(CLI::Range(0, 1000))
+        ->check(cli::wholeNumber(0, 1000))
         ->capture_default_str();
     verb->add_option("--samples", options.samples, "Samples a pixel of the references, along each side")
-        ->check(CLI::Range(1, 16))
+        ->check(cli::wholeNumber(1, 16))
         ->capture_default_str();
     verb->add_option("--threads", options.threads, "Of decoding and drawing; 0: one per core")
-        ->check(CLI::Range(0, 256))
+        ->check(cli::wholeNumber(0, 256))
         ->capture_default_str();
     verb->add_option("--cache", words->cache,
                      "Folder that keeps reference pictures (default: references in the output)");

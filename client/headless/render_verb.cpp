@@ -4,6 +4,7 @@
 #include "client/headless/picture.hpp"
 #include "client/headless/png.hpp"
 #include "shared/base/text.hpp"
+#include "shared/cli/number_check.hpp"
 #include "shared/cli/verb.hpp"
 #include "shared/io/output_file.hpp"
 
@@ -105,7 +106,7 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
         ->capture_default_str();
     verb->add_option("--size", options->size, "Width and height in pixels")->capture_default_str();
     verb->add_option("--budget", options->request.limits.pointBudget, "Points drawn at most")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40))
+        ->check(cli::wholeNumber(1, cli::mostPoints))
         ->capture_default_str();
     verb->add_option("--backend", options->backend, "software or gles")
         ->check(CLI::IsMember({"software", "gles"}))
@@ -119,10 +120,10 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
         ->check(CLI::IsMember({"complete", "first"}))
         ->capture_default_str();
     verb->add_option("--threads", options->request.threads, "Of the software backend; 0: one per core")
-        ->check(CLI::Range(0, 256))
+        ->check(cli::wholeNumber(0, 256))
         ->capture_default_str();
     verb->add_option("--timeout", options->timeoutSeconds, "Seconds for opening and loading")
-        ->check(CLI::Range(0.001, 86400.0))
+        ->check(cli::number(0.001, 86400))
         ->capture_default_str();
     verb->add_flag("--json", options->json, "Print camera and counters as JSON");
     verb->callback([options, &action] {

@@ -1,5 +1,6 @@
 // `stipple synth`: a simulated scan as a LAS file.
 #include "converter/synth/synthesize.hpp"
+#include "shared/cli/number_check.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -76,7 +77,7 @@ void addSynthVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("OUT", arguments->output, "The LAS file to write")->required();
     verb->add_option("--points", arguments->options.points, "How many points to write, exactly")
         ->required()
-        ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1'000'000'000'000}))
+        ->check(cli::wholeNumber(0, cli::mostPoints))
         ->type_name("COUNT");
     verb->add_option("--scene", arguments->scene,
                      "town (strips and stations), indoor (stations) or terrain (strips)")
@@ -85,11 +86,11 @@ void addSynthVerb(CLI::App& program, cli::Action& action) {
     verb->add_option("--seed", arguments->options.seed, "Same seed, same bytes")->capture_default_str();
     verb->add_option("--threads", arguments->options.threads,
                      "Threads to use; the output does not depend on it")
-        ->check(CLI::Range(1, 1024))
+        ->check(cli::wholeNumber(1, 1024))
         ->capture_default_str();
     verb->add_option("--noise", arguments->options.noiseMeters,
                      "Deviation of the range error, metres; 0: every point exactly on the surface")
-        ->check(CLI::Range(0.0, 10.0))
+        ->check(cli::number(0, 10))
         ->capture_default_str();
     verb->add_flag("--json", arguments->json, "Print the report as JSON");
     verb->add_flag("--quiet", arguments->quiet, "No progress");

@@ -5,6 +5,7 @@
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/base/text.hpp"
+#include "shared/cli/number_check.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
 
@@ -195,7 +196,7 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
                                             "with two attributes more: Station (along the "
                                             "line) and Offset (positive to its left)");
     CLI::Option* width =
-        verb->add_option("--width", arguments->width, "The width of the profile")->check(CLI::PositiveNumber);
+        verb->add_option("--width", arguments->width, "The width of the profile")->check(cli::numberAbove(0));
     profile->needs(width);
     width->needs(profile);
     verb->add_option(
@@ -205,7 +206,7 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
             "are thinned to it, and so is the root if its distance is smaller: no two points of a node are "
             "nearer. "
             "Other options choose among these points")
-        ->check(CLI::PositiveNumber);
+        ->check(cli::numberAbove(0));
     verb->add_option("--class", arguments->classes, "Points of these classes: 2,6 or 3-5, or both");
     verb->add_option(
         "--where", arguments->where,
@@ -213,14 +214,14 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
         "attributes the values they mean");
     verb->add_option("--limit", arguments->limit,
                      "The first so many of these points; coarse nodes come first")
-        ->check(CLI::PositiveNumber);
+        ->check(cli::wholeNumber(1, cli::mostPoints));
     CLI::Option* attributes =
         verb->add_option("--attributes", arguments->attributes,
                          "Write these attributes only, names joined by commas (none: \"\")")
             ->delimiter('\n')
             ->allow_extra_args(false);
     verb->add_option("--threads", arguments->threads, "Threads to use (default: one for each core)")
-        ->check(CLI::Range(1, 1024));
+        ->check(cli::wholeNumber(1, 1024));
     verb->add_flag("--force", arguments->force, "Replace an existing output even if it is of another kind");
     verb->add_flag("--json", arguments->json, "Print the result as one JSON object; no progress");
     verb->footer(

@@ -1,5 +1,7 @@
 #include "server/verbs/net_options.hpp"
 
+#include "shared/cli/number_check.hpp"
+
 #include <chrono>
 #include <map>
 #include <string>
@@ -14,14 +16,16 @@ CLI::Option* addSeconds(CLI::App& verb, const std::string& name, Milliseconds& l
                         const std::string& help) {
     auto set = [&limit](double seconds) { limit = Milliseconds(static_cast<std::int64_t>(seconds * 1000)); };
     return verb.add_option_function<double>(name, set, help)
-        ->check(CLI::Range(0.001, 86400.0))
+        ->check(cli::number(0.001, 86400))
         ->default_str(std::to_string(limit.count() / 1000));
 }
 
 template <class Number>
 CLI::Option* addCount(CLI::App& verb, const std::string& name, Number& limit, int least,
                       const std::string& help) {
-    return verb.add_option(name, limit, help)->check(CLI::Range(least, 10'000'000))->capture_default_str();
+    return verb.add_option(name, limit, help)
+        ->check(cli::wholeNumber(least, 10'000'000))
+        ->capture_default_str();
 }
 
 void addLimitOptions(CLI::App& verb, ServerLimits& limits) {
@@ -32,7 +36,7 @@ void addLimitOptions(CLI::App& verb, ServerLimits& limits) {
     CLI::Option* rate =
         verb.add_option_function<double>("--slowest", setRate,
                                          "Bytes a second; a client that reads an answer more slowly is cut")
-            ->check(CLI::Range(1.0, 1e9))
+            ->check(cli::number(1, 1e9))
             ->default_str("8738");
     for (CLI::Option* option :
          {addCount(verb, "--connections", limits.connections, 1,
@@ -59,7 +63,9 @@ void addNetOptions(CLI::App& verb, ServerOptions& options) {
     verb.add_option("--host", options.host,
                     "Address to listen on; 0.0.0.0 lets other machines in (see --cert)")
         ->capture_default_str();
-    verb.add_option("--port", options.port, "Port to listen on; 0: any free one")->capture_default_str();
+    verb.add_option("--port", options.port, "Port to listen on; 0: any free one")
+        ->check(cli::wholeNumber(0, 65535))
+        ->capture_default_str();
     CLI::Option* certificate = verb.add_option(
         "--cert", options.certificatePath, "Serve https: PEM file of the certificate and those it rests on");
     CLI::Option* key = verb.add_option("--key", options.keyPath, "PEM file of the certificate's private key");

@@ -5,6 +5,7 @@
 #include "server/site/cloud_address.hpp"
 #include "server/site/site.hpp"
 #include "server/verbs/net_options.hpp"
+#include "shared/cli/number_check.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -57,11 +58,11 @@ void addServingOptions(CLI::App& verb, ServingOptions& options) {
     addSiteOptions(verb, options.site);
     verb.add_flag("--json", options.asJson, "Print the address and the clouds as one line of JSON");
     verb.add_option("--grace", options.graceSeconds, "Seconds that downloads may go on after Ctrl-C")
-        ->check(CLI::Range(0, 86400))
+        ->check(cli::wholeNumber(0, 86400))
         ->capture_default_str();
     verb.add_option("--notice", options.noticeSeconds,
                     "Seconds for which /healthz says 503 after Ctrl-C before connections are refused")
-        ->check(CLI::Range(0, 86400))
+        ->check(cli::wholeNumber(0, 86400))
         ->capture_default_str();
 }
 
