@@ -1,6 +1,7 @@
 #include "converter/build/convert.hpp"
 
 #include "converter/build/build.hpp"
+#include "converter/build/known_sources.hpp"
 #include "converter/build/memory_share.hpp"
 #include "converter/build/output_check.hpp"
 #include "converter/build/parallel.hpp"
@@ -61,11 +62,13 @@ std::string optionsText(const ConvertOptions& options, const Spacing& spacing) {
 }
 
 // A cloud that is added to is no source itself: the files it was made of are.
-void appendSources(std::vector<SourceFile>& sources, const InputDescription& input) {
-    if (input.madeOf.empty())
+void appendSources(std::vector<SourceFile>& sources, const InputDescription& input, const PointHash& hash) {
+    if (input.madeOf.empty()) {
         sources.push_back(input.source);
-    else
+        sources.back().pointHash = hash.hex();
+    } else {
         sources.insert(sources.end(), input.madeOf.begin(), input.madeOf.end());
+    }
 }
 
 // What is known of the cloud once every point was read.
@@ -86,11 +89,11 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& 
         std::all_of(tiles.sums.colour.rgbMax.begin(), tiles.sums.colour.rgbMax.end(), fits8Bit);
     metadata.pointHash = tiles.sums.hash.hex();
     metadata.sampling = options.sampling;
-    for (const ScannedInput& input : scan.inputs)
-        appendSources(metadata.sources, input.description());
+    for (std::size_t i = 0; i < scan.inputs.size(); ++i)
+        appendSources(metadata.sources, scan.inputs[i].description(), tiles.sums.inputHashes[i]);
     std::sort(metadata.sources.begin(), metadata.sources.end(), [](const SourceFile& a, const SourceFile& b) {
-        return std::tie(a.name, a.format, a.pointCount, a.sizeBytes) <
-               std::tie(b.name, b.format, b.pointCount, b.sizeBytes);
+        return std::tie(a.name, a.format, a.pointCount, a.sizeBytes, a.pointHash) <
+               std::tie(b.name, b.format, b.pointCount, b.sizeBytes, b.pointHash);
     });
     metadata.tool = "stipple " STIPPLE_VERSION;
     return metadata;
@@ -142,12 +145,23 @@ Error ofOutput(Error error, const std::string& output) {
     return error.where.find(output) == std::string::npos ? error.at(output) : error;
 }
 
-Status checkCloud(const std::string& path) {
+// Of the cloud that is added to. Before the output is looked at, which may be the same file.
+Status checkAppended(const std::string& path, const std::vector<std::string>& inputs) {
+    std::error_code none;
+    if (fs::is_directory(path, none))
+        return Error{ErrorCode::unsupported, "this is a folder, so nothing can be added to it", path,
+                     "name the .stipple file with --append"};
     STIPPLE_TRY(source, openFileSource(path));
-    STIPPLE_TRY(head, readNow(*source, {0, cloudMagic.size()}));
-    if (std::string_view(reinterpret_cast<const char*>(head.data()), head.size()) != cloudMagic)
+    auto head = source->sizeBytes() > 0 ? readNow(*source, {0, cloudMagic.size()}) : Result<Bytes>(Bytes());
+    if (!head)
+        return head.error();
+    if (std::string_view(reinterpret_cast<const char*>(head->data()), head->size()) != cloudMagic)
         return Error{ErrorCode::unsupported, "this is no Stipple file, so nothing can be added to it", path,
-                     "convert it together with the others"};
+                     "convert it together with the others, without --append"};
+    for (const std::string& input : inputs)
+        if (fs::equivalent(input, path, none))
+            return Error{ErrorCode::invalidArgument, "the cloud can't be added to itself", input,
+                         "leave it out of the inputs"};
     return {};
 }
 
@@ -164,8 +178,7 @@ class Conversion {
         scanning.crs = options_.crs;
         scanning.input = options_.input;
         STIPPLE_TRY(scan, scanInputs(inputs_, scanning));
-        STIPPLE_CHECK(refuseKnownSources(scan));
-        STIPPLE_CHECK(refuseLosses(scan, nullptr));
+        STIPPLE_CHECK(checkSources(scan));
         result_.warnings = scan.warnings;
         result_.seconds.scan = watch_.lap();
         auto folder = WorkFolder::open(workFolderPath(output_, options_), identityOf(scan, output_, options_),
@@ -182,6 +195,12 @@ class Conversion {
     }
 
   private:
+    Status checkSources(const Scan& scan) const {
+        if (!options_.allowDuplicates)
+            STIPPLE_CHECK(refuseKnownSources(scan, {options_.append, threads_, options_.stop}));
+        return refuseLosses(scan, nullptr);
+    }
+
     Status attempt(const Scan& scan, WorkFolder& folder) {
         try {
             return runIn(scan, folder);
@@ -202,6 +221,8 @@ class Conversion {
         STIPPLE_CHECK(refuseLosses(scan, &tiles.sums));
         for (const std::string& warning : tiles.sums.warnings(scan))
             result_.warnings.push_back(warning);
+        for (const std::string& warning : equalInputs(scan, tiles.sums))
+            result_.warnings.push_back(warning);
         result_.seconds.tile = watch_.lap();
 
         STIPPLE_TRY(blocks, folder.scratch("blocks", folder.resumes()));
@@ -215,25 +236,6 @@ class Conversion {
                                           tiles.onDisk ? tiles.sums.points * tiles.layout.rowBytes() : 0);
         result_.seconds.sample = watch_.lap();
         return pack(tiles, built, *blocks);
-    }
-
-    // The same file twice in one cloud is a mistake, or a command that was repeated.
-    Status refuseKnownSources(const Scan& scan) const {
-        if (options_.append.empty())
-            return {};
-        const std::vector<SourceFile>* known = nullptr;
-        for (const ScannedInput& input : scan.inputs)
-            if (input.description().path == options_.append)
-                known = &input.description().madeOf;
-        for (const ScannedInput& input : scan.inputs) {
-            const InputDescription& description = input.description();
-            if (known && description.path != options_.append &&
-                std::find(known->begin(), known->end(), description.source) != known->end())
-                return Error{ErrorCode::invalidArgument,
-                             cat("the cloud ", options_.append, " was made of this file already"),
-                             description.path, "leave it out"};
-        }
-        return {};
     }
 
     // With --strict: points that the files count but lack (known from the start), or that had to be dropped.
@@ -326,12 +328,12 @@ class Conversion {
 
 Result<ConvertResult> convertFiles(const std::vector<std::string>& inputs, const std::string& output,
                                    const ConvertOptions& options, const ConvertProgress& progress) {
+    if (!options.append.empty())
+        STIPPLE_CHECK(checkAppended(options.append, inputs));
     STIPPLE_CHECK(checkOutput(inputs, output, options.force, cloudMagic));
     std::vector<std::string> all = inputs;
-    if (!options.append.empty()) {
-        STIPPLE_CHECK(checkCloud(options.append));
+    if (!options.append.empty())
         all.push_back(options.append);
-    }
     try {
         return Conversion(all, output, options, progress).run();
     } catch (const std::bad_alloc&) {

@@ -41,9 +41,10 @@ struct ConvertOptions {
     // quarter of the machine's.
     std::uint64_t memoryBytes = 0;
     std::string temp = {}; // folder for what does not fit memory, and checkpoints; empty: beside the output
-    // A cloud that the inputs are added to; may be the output, which is replaced when all is done. A source
-    // that it has already (name, points and size) is refused.
+    // A cloud that the inputs are added to; may be the output, which is replaced when all is done.
     std::string append = {};
+    // Take points in that a cloud among the inputs holds already (known_sources.hpp).
+    bool allowDuplicates = false;
     bool strict = false; // refuse inputs with points that have to be dropped, or that are not there
     // Replace an existing output that is no Stipple file. An input is never replaced.
     bool force = false;

@@ -95,6 +95,8 @@ void PointSums::add(const PointSums& other) {
     for (std::size_t i = 0; i < inputBounds.size(); ++i)
         inputBounds[i].extend(other.inputBounds[i]);
     hash.add(other.hash);
+    for (std::size_t i = 0; i < inputHashes.size(); ++i)
+        inputHashes[i].add(other.inputHashes[i]);
     colour.extend(other.colour);
     maxGridError = std::max(maxGridError, other.maxGridError);
     for (std::size_t i = 0; i < reports.size(); ++i)
@@ -115,6 +117,8 @@ void PointSums::save(ByteWriter& to) const {
     for (const BoxI& box : inputBounds)
         saveBox(to, box);
     to.write(hash);
+    for (const PointHash& input : inputHashes)
+        to.write(input);
     to.write(colour);
     to.write(maxGridError);
     for (const ReadReport& report : reports)
@@ -129,6 +133,8 @@ bool PointSums::load(ByteReader& from) {
     for (BoxI& box : inputBounds)
         box = loadBox(from);
     hash = from.read<PointHash>();
+    for (PointHash& input : inputHashes)
+        input = from.read<PointHash>();
     colour = from.read<ColourExtremes>();
     maxGridError = from.read<double>();
     for (ReadReport& report : reports)

@@ -23,11 +23,12 @@ struct PointSums {
     BoxI bounds;                   // grid integers of the cloud
     std::vector<BoxI> inputBounds; // in each input's own integers
     PointHash hash;
+    std::vector<PointHash> inputHashes; // of each input's points as it hands them out
     ColourExtremes colour;
     double maxGridError = 0;         // world units; > 0 only where inputs do not fit one grid exactly
     std::vector<ReadReport> reports; // of each input: dropped points by reason
 
-    explicit PointSums(std::size_t inputs = 0) : inputBounds(inputs), reports(inputs) {}
+    explicit PointSums(std::size_t inputs = 0) : inputBounds(inputs), inputHashes(inputs), reports(inputs) {}
     ReadReport report() const;        // of all inputs together
     void add(const PointSums& other); // of the same inputs
     // For checkpoints. load() answers false if the bytes are no sums of so many inputs.
@@ -42,7 +43,7 @@ struct PointSums {
 std::vector<std::string> droppedTexts(const ReadReport& report);
 
 // The points of one batch of input `input` on the cloud's grid and in its schema: `raw` itself where nothing
-// changes, else `mapped`, which is overwritten. Adds them to `sums` (not to its hash, nor its report).
+// changes, else `mapped`, which is overwritten. Adds them to `sums` (not to its hashes, nor its report).
 const PointBatch& toCloud(const Scan& scan, std::size_t input, const PointBatch& raw, PointBatch& mapped,
                           PointSums& sums);
 

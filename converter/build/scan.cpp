@@ -2,27 +2,29 @@
 
 #include "converter/build/common_schema.hpp"
 #include "converter/crs/crs.hpp"
+#include "converter/input/file_identity.hpp"
 #include "converter/input/reproject.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
-#include <set>
 
 namespace stipple {
 
 namespace {
 Status refuseDoubles(const std::vector<std::string>& paths) {
-    std::set<std::string> seen;
+    std::map<FileIdentity, const std::string*> seen;
     for (const std::string& path : paths) {
-        std::error_code error;
-        std::filesystem::path real = std::filesystem::canonical(path, error);
-        if (error)
+        std::optional<FileIdentity> identity = fileIdentity(path);
+        if (!identity)
             continue; // opening it says what is wrong
-        if (!seen.insert(real.string()).second)
-            return Error{ErrorCode::invalidArgument, "the input is given twice", path, "name it once"};
+        auto [known, isNew] = seen.emplace(*identity, &path);
+        if (!isNew)
+            return Error{ErrorCode::invalidArgument,
+                         cat("the input is given twice",
+                             *known->second == path ? "" : cat(": it is the same file as ", *known->second)),
+                         path, "name it once"};
     }
     return {};
 }

@@ -151,12 +151,24 @@ class Tiling {
     Status read(const PartRef& part, Worker& worker) {
         return readPart(scan_, part, worker.reader, [&](const PointBatch& batch) -> Status {
             if (!measuring_ && !misfit_) {
-                worker.reader.sums.hash.add(scan_.schema, batch);
+                addHashes(part.input, batch, worker.reader);
                 STIPPLE_CHECK(deal(batch, worker));
             }
             report(batch.size());
             return {};
         });
+    }
+
+    // The cloud's hash, and that of the input, which is the same while its points are the cloud's unchanged.
+    void addHashes(std::size_t input, const PointBatch& batch, PartReader& reader) const {
+        PointHash ofBatch;
+        ofBatch.add(scan_.schema, batch);
+        reader.sums.hash.add(ofBatch);
+        if (&batch != &reader.raw) {
+            ofBatch = {};
+            ofBatch.add(scan_.inputs[input].description().schema, reader.raw);
+        }
+        reader.sums.inputHashes[input].add(ofBatch);
     }
 
     void report(std::uint64_t points) {

@@ -49,7 +49,7 @@ class CloudInput final : public PointInput {
         InputDescription& d = input->description_;
         d.path = path;
         d.source = {std::filesystem::path(path).filename().string(), "Stipple cloud", metadata.pointCount,
-                    cloud.reader->header().fileBytes};
+                    cloud.reader->header().fileBytes, metadata.pointHash};
         d.grid = metadata.grid;
         d.schema = metadata.schema;
         d.crs = metadata.crs;

@@ -1,11 +1,13 @@
 #include "converter/input/expand.hpp"
 
+#include "converter/input/file_identity.hpp"
 #include "converter/input/glob.hpp"
 #include "converter/input/open.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 namespace stipple {
@@ -122,13 +124,10 @@ class Expansion {
   public:
     explicit Expansion(const std::string& output) : output_(output) {}
 
-    void addFile(const std::string& path) {
-        paths_.push_back(path);
-        known_.insert(realPath(path));
-    }
+    void addFile(const std::string& path) { paths_.push_back(path); }
 
     // Known beforehand: a file is not taken again by a folder named before it.
-    void expect(const std::string& path) { known_.insert(realPath(path)); }
+    void expect(const std::string& path) { isNew(path); }
 
     Status addFolder(const std::string& folder) {
         std::vector<std::string> files, scans, clouds, others;
@@ -149,7 +148,7 @@ class Expansion {
         if (!clouds.empty())
             warnings_.push_back(
                 cat(folder, ": left out; to add clouds, name them", summary(clouds, ".stipple file")));
-        addFound(scans);
+        addFound(folder, scans);
         return {};
     }
 
@@ -164,7 +163,7 @@ class Expansion {
             return Error{ErrorCode::notFound,
                          before > 0 ? "only the output itself fits the pattern" : "no file fits the pattern",
                          pattern, "`*` stays inside a folder, `**` goes through all below"};
-        addFound(files);
+        addFound(pattern, files);
         return {};
     }
 
@@ -181,24 +180,38 @@ class Expansion {
         return text + (files.size() > namedInWarning ? ", …)" : ")");
     }
 
-    static std::string realPath(const std::string& path) {
-        std::error_code error;
-        fs::path real = fs::canonical(path, error);
-        return error ? path : real.string();
+    // Notes the file; one that can't be looked at is new each time, and fails where it is opened.
+    bool isNew(const std::string& path) {
+        std::optional<FileIdentity> identity = fileIdentity(path);
+        return !identity || known_.emplace(*identity, path).second;
+    }
+    // Two ways of writing one path, not two links to one file.
+    static bool isSamePath(const std::string& a, const std::string& b) {
+        std::error_code ignored;
+        fs::path first(a), second(b);
+        return first.filename() == second.filename() &&
+               fs::equivalent(joined(first.parent_path().string(), "."),
+                              joined(second.parent_path().string(), "."), ignored);
     }
     bool isOutput(const std::string& file) const {
         std::error_code ignored;
         return !output_.empty() && fs::equivalent(file, output_, ignored);
     }
-    void addFound(const std::vector<std::string>& files) {
+    void addFound(const std::string& argument, const std::vector<std::string>& files) {
+        std::vector<std::string> links;
         for (const std::string& file : files)
-            if (known_.insert(realPath(file)).second)
+            if (isNew(file))
                 paths_.push_back(file);
+            else if (!isSamePath(known_[*fileIdentity(file)], file))
+                links.push_back(file);
+        if (!links.empty())
+            warnings_.push_back(
+                cat(argument, ": left out, as links to files that are read anyway", summary(links)));
     }
 
     std::string output_;
     std::vector<std::string> paths_, warnings_;
-    std::set<std::string> known_; // canonical
+    std::map<FileIdentity, std::string> known_; // the path that each was first found by
 };
 
 bool mustExpand(const std::string& argument) {

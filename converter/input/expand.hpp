@@ -26,7 +26,8 @@ struct ExpandedInputs {
 // kind.
 //
 // `output`, the file that is going to be written, is no input where a folder or a pattern holds it ("": there
-// is none). A file that several folders or patterns lead to is taken once.
+// is none). A file that several folders or patterns lead to is taken once; what links to it, by another name,
+// is named in a warning.
 //
 // Errors: notFound (a pattern that nothing fits, a folder without scans), ioFailed (a folder that can't be
 // read). Holds no file open.

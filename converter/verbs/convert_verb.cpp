@@ -171,6 +171,8 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
     verb->add_option(
         "--append", arguments->options.append,
         "Add the inputs to this .stipple file (replaced when all is done, unless -o names another)");
+    verb->add_flag("--allow-duplicates", arguments->options.allowDuplicates,
+                   "Take in points that a cloud among the inputs, or --append, holds already");
     cli::addReadingOptions(*verb, arguments->options.input);
     const std::vector<std::string> samplings(samplingNames.begin(), samplingNames.end());
     verb->add_option_function<std::string>(

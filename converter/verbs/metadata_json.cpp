@@ -99,7 +99,8 @@ Json metadataJson(const CloudMetadata& metadata) {
         json["sources"].push_back({{"name", source.name},
                                    {"format", source.format},
                                    {"points", source.pointCount},
-                                   {"bytes", source.sizeBytes}});
+                                   {"bytes", source.sizeBytes},
+                                   {"pointHash", source.pointHash}});
     json["tool"] = metadata.tool;
     json["options"] = metadata.options;
     return json;

@@ -66,6 +66,9 @@ struct SourceFile {
     std::string format; // "LAS 1.2, point format 2"
     std::uint64_t pointCount = 0;
     std::uint64_t sizeBytes = 0;
+    // PointHash of its points as the file has them: on its own grid and with its own attributes, whatever the
+    // cloud makes of them. Hex; empty where it is not known.
+    std::string pointHash = {};
     friend bool operator==(const SourceFile&, const SourceFile&) = default;
 };
 

@@ -302,11 +302,14 @@ Bytes writeMetadata(const CloudMetadata& metadata) {
                           a < metadata.statistics.size() ? metadata.statistics[a] : AttributeStatistics{}));
     json["pointHash"] = metadata.pointHash;
     json["sources"] = Json::array();
-    for (const SourceFile& source : metadata.sources)
-        json["sources"].push_back({{"name", source.name},
-                                   {"format", source.format},
-                                   {"pointCount", source.pointCount},
-                                   {"sizeBytes", source.sizeBytes}});
+    for (const SourceFile& source : metadata.sources) {
+        Json& entry = json["sources"].emplace_back(Json{{"name", source.name},
+                                                        {"format", source.format},
+                                                        {"pointCount", source.pointCount},
+                                                        {"sizeBytes", source.sizeBytes}});
+        if (!source.pointHash.empty())
+            entry["pointHash"] = source.pointHash;
+    }
     json["tool"] = metadata.tool;
     json["options"] = metadata.options;
     std::string text = dump(json);
@@ -353,7 +356,8 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
     for (std::size_t s = 0; s < sources.size() && !error; ++s) {
         Fields source(sources[s], cat("sources[", s, "]"), error);
         metadata.sources.push_back({source.text("name"), source.text("format"), source.count("pointCount"),
-                                    source.count("sizeBytes")});
+                                    source.count("sizeBytes"),
+                                    source.find("pointHash") ? source.text("pointHash") : std::string()});
     }
     metadata.tool = fields.text("tool");
     metadata.options = fields.text("options");

@@ -4,6 +4,7 @@
 #include "shared/base/text.hpp"
 #include "tests/support/temporary_folder.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 using namespace stipple;
@@ -143,6 +144,21 @@ TEST_CASE("links to files are followed, loops of links are not", "[inputs]") {
     CHECK(expanded({scans / "sub"}).paths == scans.all({"sub/c.las", "sub/deep/d.las", "sub/link.las"}));
     CHECK(expanded({scans / "**/b.las"}).paths == scans.all({"b.las"}));
     CHECK(expanded({scans.path()}).paths.size() == 5);
+}
+
+TEST_CASE("a file that a folder holds under several names is taken once, with a warning", "[inputs]") {
+    Scans scans;
+    fs::create_hard_link(scans / "b.las", scans / "c.las");
+    fs::create_symlink(scans / "b.las", scans / "d.las");
+    for (const std::string& argument : {scans.path(), scans / "*.la[sz]"}) {
+        ExpandedInputs inputs = expanded({argument});
+        CHECK(std::count(inputs.paths.begin(), inputs.paths.end(), scans / "b.las") == 1);
+        CHECK(std::count(inputs.paths.begin(), inputs.paths.end(), scans / "c.las") == 0);
+        CHECK(std::count(inputs.paths.begin(), inputs.paths.end(), scans / "d.las") == 0);
+        CHECK(mentions(inputs, "c.las, d.las"));
+    }
+    // Another way of writing the folder is no other name of the file.
+    CHECK(expanded({scans / "a*.laz", scans / "sub/../a*.laz"}).warnings.empty());
 }
 
 TEST_CASE("a folder that can't be read is an error that names it", "[inputs]") {

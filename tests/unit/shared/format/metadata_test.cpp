@@ -30,7 +30,8 @@ CloudMetadata fullMetadata() {
     metadata.schema.attributes[1].scale = 0.006;
     metadata.statistics[0] = {0.1, 0.2, 0.3, 0.4, {{-5, 7}, {200, UINT64_MAX}}};
     metadata.pointHash = "0123456789abcdef0123456789abcdef";
-    metadata.sources = {{"täst.las", "LAS 1.2, point format 2", 17, UINT64_MAX}};
+    metadata.sources = {{"täst.las", "LAS 1.2, point format 2", 17, UINT64_MAX},
+                        {"b.las", "LAS 1.2, point format 2", 17, 5, "0123456789abcdef0123456789abcdef"}};
     metadata.tool = "stipple 0.1.0";
     return metadata;
 }
