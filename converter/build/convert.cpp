@@ -177,8 +177,13 @@ class Conversion {
         ScanOptions scanning;
         scanning.crs = options_.crs;
         scanning.input = options_.input;
-        STIPPLE_TRY(scan, scanInputs(inputs_, scanning));
-        STIPPLE_CHECK(checkSources(scan));
+        scanning.input.stop = options_.stop;
+        auto scanned = scanInputs(inputs_, scanning);
+        if (!scanned)
+            return scanned.error().code == ErrorCode::cancelled ? endBeforeWork() : scanned.error();
+        const Scan& scan = *scanned;
+        if (Status known = checkSources(scan); !known)
+            return known.error().code == ErrorCode::cancelled ? endBeforeWork() : known.error();
         result_.warnings = scan.warnings;
         result_.seconds.scan = watch_.lap();
         auto folder = WorkFolder::open(workFolderPath(output_, options_), identityOf(scan, output_, options_),
@@ -199,6 +204,16 @@ class Conversion {
         if (!options_.allowDuplicates)
             STIPPLE_CHECK(refuseKnownSources(scan, {options_.append, threads_, options_.stop}));
         return refuseLosses(scan, nullptr);
+    }
+
+    // Interrupted before the folder of checkpoints was opened, which an earlier run may have left.
+    Error endBeforeWork() const {
+        const std::string folder = workFolderPath(output_, options_);
+        std::error_code none;
+        return {ErrorCode::cancelled, "interrupted", "",
+                fs::exists(folder, none) ? cat("what an earlier run has done stays in ", folder,
+                                               ": the same command goes on from there, or remove that folder")
+                                         : "nothing is left behind"};
     }
 
     Status attempt(const Scan& scan, WorkFolder& folder) {
@@ -274,9 +289,10 @@ class Conversion {
             metadata.statistics.push_back(attribute.finish());
         metadata.spacing = built.spacing.world(metadata.rootCube.bits);
         metadata.options = optionsText(options_, built.spacing);
-        auto written = assembleCloud(output_, metadata, built.nodes, blocks);
+        auto written = assembleCloud(output_, metadata, built.nodes, blocks, options_.stop);
         if (!written)
-            return ofOutput(written.error(), output_);
+            return written.error().code == ErrorCode::cancelled ? written.error()
+                                                                : ofOutput(written.error(), output_);
         result_.written = *written;
         result_.seconds.pack = watch_.lap();
         return {};

@@ -225,6 +225,8 @@ Result<Scan> scanInputs(const std::vector<std::string>& paths, const ScanOptions
         return Error{ErrorCode::invalidArgument, "there is no input", "", "name at least one file"};
     STIPPLE_CHECK(refuseDoubles(paths));
     for (const std::string& path : paths) {
+        if (options.input.stop && *options.input.stop)
+            return Error{ErrorCode::cancelled, "interrupted", "", ""};
         STIPPLE_TRY(input, openInput(path, options.input));
         for (const std::string& warning : input->description().warnings)
             scan.warnings.push_back(cat(path, ": ", warning));

@@ -86,6 +86,7 @@ class Verification {
         const CloudMetadata& metadata = checks_->metadata();
         ScanOptions scanning;
         scanning.input = options_.reading;
+        scanning.input.stop = options_.stop;
         if (metadata.crs.known())
             scanning.target = metadata.crs; // as they were reprojected for the file
         STIPPLE_TRY(scan, scanInputs(inputs, scanning));

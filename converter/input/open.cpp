@@ -24,7 +24,7 @@ using SourceOpener = Result<std::unique_ptr<PointInput>> (*)(const std::string& 
 
 template <SourceOpener open>
 Result<std::unique_ptr<PointInput>> openWithSource(const std::string& path, const InputOptions& options) {
-    STIPPLE_TRY(source, SharedSource::openFile(path));
+    STIPPLE_TRY(source, SharedSource::openFile(path, options.stop));
     return open(path, std::move(source), options);
 }
 
@@ -40,9 +40,7 @@ constexpr std::array kinds = {
     Kind{"\x89STPL", cloudName,
          [](const std::string& path, const InputOptions&) { return openCloudInput(path); }},
     Kind{"ASTM-E57", "an E57 file",
-         [](const std::string& path, const InputOptions& options) {
-             return openE57Input(path, options.scale);
-         }},
+         [](const std::string& path, const InputOptions& options) { return openE57Input(path, options); }},
     Kind{"ply\n", "a PLY file", openWithSource<openPlyInput>},
     Kind{"ply\r", "a PLY file", openWithSource<openPlyInput>},
     Kind{"ply ", "a PLY file", openWithSource<openPlyInput>},

@@ -4,6 +4,8 @@
 
 #include "converter/input/point_input.hpp"
 
+#include <atomic>
+
 namespace stipple {
 
 struct InputOptions {
@@ -12,6 +14,8 @@ struct InputOptions {
     // Grid step of inputs whose coordinates are floats or decimals, world units. 0: chosen by what they hold
     // (input/float_grid.hpp).
     double scale = 0;
+    // Once true, whatever reads the file ends with `cancelled`, also opening it. Must outlive the input.
+    const std::atomic<bool>* stop = nullptr;
 };
 
 // Errors name the file: missing, a folder, empty, of a kind that is not read, damaged.

@@ -1,12 +1,14 @@
 #include "converter/input/shared_source.hpp"
 
-#include "shared/io/file_source.hpp"
+#include "converter/input/input_file.hpp"
 
 namespace stipple {
 
-Result<std::unique_ptr<SharedSource>> SharedSource::openFile(const std::string& path) {
-    STIPPLE_TRY(source, openFileSource(path));
+Result<std::unique_ptr<SharedSource>> SharedSource::openFile(const std::string& path,
+                                                             const std::atomic<bool>* stop) {
+    STIPPLE_TRY(source, openInputFile(path, stop));
     auto shared = std::make_unique<SharedSource>(std::move(source));
+    shared->stop_ = stop;
     std::error_code unknown;
     shared->changed_ = std::filesystem::last_write_time(path, unknown);
     shared->isFile_ = !unknown;
@@ -30,7 +32,7 @@ void SharedSource::rest() {
 Status SharedSource::open() {
     if (source_)
         return {};
-    STIPPLE_TRY(source, openFileSource(name_));
+    STIPPLE_TRY(source, openInputFile(name_, stop_));
     std::error_code unknown;
     if (source->sizeBytes() != sizeBytes_ || std::filesystem::last_write_time(name_, unknown) != changed_)
         return Error{ErrorCode::changed, "the file changed while it was being read", name_,

@@ -4,6 +4,7 @@
 
 #include "shared/io/byte_source.hpp"
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -14,8 +15,9 @@ class SharedSource {
   public:
     explicit SharedSource(std::unique_ptr<ByteSource> source)
         : source_(std::move(source)), sizeBytes_(source_->sizeBytes()), name_(source_->name()) {}
-    // A file that can be let go and opened again.
-    static Result<std::unique_ptr<SharedSource>> openFile(const std::string& path);
+    // A file that can be let go and opened again (input_file.hpp).
+    static Result<std::unique_ptr<SharedSource>> openFile(const std::string& path,
+                                                          const std::atomic<bool>* stop = nullptr);
 
     // As ByteSource::read, waited for; no bytes, and no error, from the end of the file on.
     Result<Bytes> read(ByteRange range);
@@ -33,6 +35,7 @@ class SharedSource {
     std::uint64_t sizeBytes_ = 0;
     std::string name_;
     bool isFile_ = false;
+    const std::atomic<bool>* stop_ = nullptr;
     std::filesystem::file_time_type changed_; // of files
 };
 

@@ -89,12 +89,14 @@ std::vector<Bytes> placeChunks(FileHeader& header, const std::vector<ChunkPlan>&
 
 Status copyNodes(OutputFile& file, const ScratchFile& blocks, const std::vector<StoredNode>& nodes,
                  const std::vector<OctreeNode>& octree, const std::vector<ChunkPlan>& plans,
-                 WrittenCloud& written) {
+                 const std::atomic<bool>* stop, WrittenCloud& written) {
     Bytes buffer;
     for (const ChunkPlan& plan : plans)
         for (std::size_t i : plan.nodes) {
             if (octree[i].source < 0)
                 continue;
+            if (stop && *stop)
+                return Error{ErrorCode::cancelled, "interrupted", "", ""};
             const StoredNode& stored = nodes[static_cast<std::size_t>(octree[i].source)];
             buffer.resize(static_cast<std::size_t>(stored.sizeBytes()));
             STIPPLE_CHECK(blocks.read(stored.offset, buffer));
@@ -151,7 +153,8 @@ Result<StoredNode> storeNode(const EncodedNode& node, ScratchFile& blocks) {
 }
 
 Result<WrittenCloud> assembleCloud(const std::string& path, const CloudMetadata& metadata,
-                                   const std::vector<StoredNode>& nodes, const ScratchFile& blocks) {
+                                   const std::vector<StoredNode>& nodes, const ScratchFile& blocks,
+                                   const std::atomic<bool>* stop) {
     std::size_t attributeBlockCount = attributeBlocks(metadata).size();
     STIPPLE_CHECK(check(path, metadata, nodes, attributeBlockCount));
     std::vector<NodeKey> keys;
@@ -175,7 +178,7 @@ Result<WrittenCloud> assembleCloud(const std::string& path, const CloudMetadata&
     STIPPLE_CHECK(file->append(metadataBlock));
     STIPPLE_CHECK(file->append(chunkBlocks[0]));
     WrittenCloud written;
-    STIPPLE_CHECK(copyNodes(*file, blocks, nodes, octree, plans, written));
+    STIPPLE_CHECK(copyNodes(*file, blocks, nodes, octree, plans, stop, written));
     for (std::size_t c = 1; c < chunkBlocks.size(); ++c)
         STIPPLE_CHECK(file->append(chunkBlocks[c]));
     STIPPLE_CHECK(file->commit());

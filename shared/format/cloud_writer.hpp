@@ -9,6 +9,7 @@
 #include "shared/io/scratch_file.hpp"
 #include "shared/points/point_batch.hpp"
 
+#include <atomic>
 #include <memory>
 #include <span>
 #include <string>
@@ -64,9 +65,10 @@ Result<StoredNode> storeNode(const EncodedNode& node, ScratchFile& blocks);
 
 // Writes the file: orders the nodes (any order, each key once; those without points need not be there, the
 // tree above a node is completed), lays them out and copies their blocks. `path` gets its name when all is
-// written. `metadata` is final here (statistics, hash, counts).
+// written. `metadata` is final here (statistics, hash, counts). `cancelled` once `stop` is true.
 Result<WrittenCloud> assembleCloud(const std::string& path, const CloudMetadata& metadata,
-                                   const std::vector<StoredNode>& nodes, const ScratchFile& blocks);
+                                   const std::vector<StoredNode>& nodes, const ScratchFile& blocks,
+                                   const std::atomic<bool>* stop = nullptr);
 
 // Both in one, for clouds that are made in one go.
 class CloudWriter {

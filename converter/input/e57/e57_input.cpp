@@ -4,9 +4,9 @@
 #include "converter/input/e57/measure.hpp"
 #include "converter/input/float_grid.hpp"
 #include "converter/input/idle_files.hpp"
+#include "converter/input/input_file.hpp"
 #include "shared/base/text.hpp"
 #include "shared/codec/checksum.hpp"
-#include "shared/io/file_source.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -41,9 +41,9 @@ struct OpenFile {
     Identity identity() const { return {source->sizeBytes(), xxh64(xml), header.pageChecksum}; }
 };
 
-Result<OpenFile> openFile(const std::string& path) {
+Result<OpenFile> openFile(const std::string& path, const std::atomic<bool>* stop) {
     OpenFile file;
-    STIPPLE_TRY(source, openFileSource(path));
+    STIPPLE_TRY(source, openInputFile(path, stop));
     file.source = std::move(source);
     STIPPLE_TRY(header, readFileHeader(*file.source));
     file.header = header;
@@ -154,12 +154,13 @@ BoxI boundsOnGrid(const Grid& grid, const BoxD& world) {
 
 class E57Input final : public PointInput {
   public:
-    static Result<std::unique_ptr<PointInput>> open(const std::string& path, double scale) {
+    static Result<std::unique_ptr<PointInput>> open(const std::string& path, const InputOptions& options) {
         auto input = std::make_unique<E57Input>();
-        auto file = openFile(path);
+        input->stop_ = options.stop;
+        auto file = openFile(path, options.stop);
         if (!file)
             return atFile(file.error(), path);
-        if (Status described = input->describe(path, *file, scale); !described)
+        if (Status described = input->describe(path, *file, options); !described)
             return atFile(described.error(), path);
         input->idle_.put(std::move(file->source));
         return std::unique_ptr<PointInput>(std::move(input));
@@ -186,12 +187,13 @@ class E57Input final : public PointInput {
     };
     friend class E57Stream;
 
-    Status describe(const std::string& path, OpenFile& file, double scale);
+    Status describe(const std::string& path, OpenFile& file, const InputOptions& options);
     Status describeCrs(const Document& document);
     void describeBounds(const Measure& measured, bool isMeasured);
     void divide(const Measure& measured);
 
     InputDescription description_;
+    const std::atomic<bool>* stop_ = nullptr;
     Identity identity_;
     Layout layout_;
     AttributePlan plan_;
@@ -201,7 +203,7 @@ class E57Input final : public PointInput {
     mutable IdleFiles<std::unique_ptr<ByteSource>> idle_;
 };
 
-Status E57Input::describe(const std::string& path, OpenFile& file, double scale) {
+Status E57Input::describe(const std::string& path, OpenFile& file, const InputOptions& options) {
     InputDescription& d = description_;
     d.path = path;
     identity_ = file.identity();
@@ -218,7 +220,7 @@ Status E57Input::describe(const std::string& path, OpenFile& file, double scale)
     } else {
         measured = countOnly(layout_);
     }
-    d.grid = gridOver(layout_, measured, scale);
+    d.grid = gridOver(layout_, measured, options.scale);
     plan_ = planAttributes(layout_.entries(), layout_.coordinates, measured.ranges);
     d.schema = plan_.schema;
     d.gpsTime = plan_.gpsTime;
@@ -318,7 +320,7 @@ void E57Input::divide(const Measure& measured) {
 Result<std::unique_ptr<ByteSource>> E57Input::take() const {
     if (std::optional<std::unique_ptr<ByteSource>> idle = idle_.take())
         return std::move(*idle);
-    auto file = openFile(description_.path);
+    auto file = openFile(description_.path, stop_);
     if (!file)
         return atFile(file.error(), description_.path);
     if (file->identity() != identity_)
@@ -399,8 +401,8 @@ Result<std::unique_ptr<PointStream>> E57Input::openPart(std::size_t part) const 
 }
 } // namespace
 
-Result<std::unique_ptr<PointInput>> openE57Input(const std::string& path, double scale) {
-    return E57Input::open(path, scale);
+Result<std::unique_ptr<PointInput>> openE57Input(const std::string& path, const InputOptions& options) {
+    return E57Input::open(path, options);
 }
 
 } // namespace stipple

@@ -7,12 +7,12 @@
 // What records hold besides is in input/e57/attributes.hpp. Pictures (images2D) are left out.
 #pragma once
 
-#include "converter/input/point_input.hpp"
+#include "converter/input/open.hpp"
 
 namespace stipple {
 
 // `scale` > 0: the grid's step where it is not exact. Parts begin about every quarter of a million records.
 // Errors name the file and the byte; a page with a wrong checksum is never read past.
-Result<std::unique_ptr<PointInput>> openE57Input(const std::string& path, double scale = 0);
+Result<std::unique_ptr<PointInput>> openE57Input(const std::string& path, const InputOptions& options = {});
 
 } // namespace stipple

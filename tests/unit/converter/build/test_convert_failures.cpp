@@ -293,6 +293,86 @@ TEST_CASE("a conversion in memory that is stopped in any phase leaves nothing", 
         }
 }
 
+namespace {
+// Writes a text file of about so many bytes, which is read from end to end when it is opened.
+void writeText(const std::string& path, std::size_t bytes) {
+    std::string lines;
+    for (int i = 0; i < 1000; ++i)
+        lines +=
+            std::to_string(i * 7 % 1000) + ".125 " + std::to_string(i * 13 % 1000) + ".25 0.5 120 90 33\n";
+    std::ofstream file(path);
+    for (std::size_t written = 0; written < bytes; written += lines.size())
+        file << lines;
+}
+} // namespace
+
+TEST_CASE("a conversion that is stopped while its inputs are opened ends soon and leaves nothing",
+          "[failures]") {
+    TemporaryFolder folder;
+    writeText(folder / "in.txt", std::size_t{400} << 20);
+    // The program says when it got the signal; far more than it may take are left to be read.
+    Ended ended = shell("cd '" + (folder / "") +
+                        "'; \"$stipple\" convert in.txt -o out.stipple --progress none & "
+                        "sleep 0.3; kill -INT $!; sent=$(date +%s%N); wait $!; code=$?; "
+                        "echo took $(( ($(date +%s%N) - sent) / 1000000 )) ms; exit $code");
+    INFO(ended.said);
+    CHECK(ended.code == cli::interrupted);
+    CHECK(ended.says("interrupted (nothing is left behind)"));
+    CHECK(folder.files() == 1);
+    std::size_t at = ended.said.find("took ");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stoi(ended.said.substr(at + 5)) < 500);
+}
+
+TEST_CASE("every kind of input that is read when it is opened stops there", "[failures]") {
+    TemporaryFolder folder;
+    std::atomic<bool> stop{true};
+    writeText(folder / "in.txt", 1000);
+    std::ofstream(folder / "in.ply") << "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\n"
+                                        "property double y\nproperty double z\nend_header\n1 2 3\n";
+    for (const char* name : {"in.txt", "in.ply"}) {
+        InputOptions reading;
+        reading.stop = &stop;
+        auto opened = openInput(folder / name, reading);
+        REQUIRE_FALSE(opened.ok());
+        CHECK(opened.error().code == ErrorCode::cancelled);
+        ConvertOptions options;
+        options.stop = &stop;
+        auto result = convertFiles({folder / name}, folder / "out.stipple", options, noProgress);
+        REQUIRE_FALSE(result.ok());
+        CHECK(result.error().sentence() == "interrupted (nothing is left behind)");
+    }
+    // What an earlier run left is not touched, and is spoken of.
+    fs::create_directory(folder / "out.stipple.work");
+    ConvertOptions options;
+    options.stop = &stop;
+    auto result = convertFiles({folder / "in.txt"}, folder / "out.stipple", options, noProgress);
+    REQUIRE_FALSE(result.ok());
+    CHECK(result.error().sentence().find("stays in " + (folder / "out.stipple.work")) != std::string::npos);
+    CHECK(fs::exists(folder / "out.stipple.work"));
+}
+
+TEST_CASE("a conversion that is stopped while the file is written leaves nothing of it", "[failures]") {
+    TemporaryFolder folder;
+    writeScan(surfaceScan(1, 20000, 1), folder / "in.las");
+    CloudMetadata metadata = convertOrFail({folder / "in.las"}, folder / "whole.stipple").metadata;
+    auto blocks = ScratchFile::create(folder / "blocks");
+    REQUIRE(blocks.ok());
+    EncodedNode node;
+    node.pointCount = static_cast<std::uint32_t>(metadata.pointCount);
+    node.attributes.resize(attributeBlocks(metadata).size());
+    auto stored = storeNode(node, **blocks);
+    REQUIRE(stored.ok());
+    std::atomic<bool> stop{true};
+    auto written = assembleCloud(folder / "out.stipple", metadata, {*stored}, **blocks, &stop);
+    REQUIRE_FALSE(written.ok());
+    INFO(written.error().sentence());
+    CHECK(written.error().code == ErrorCode::cancelled);
+    CHECK(!fs::exists(folder / "out.stipple"));
+    for (const auto& entry : fs::directory_iterator(folder / ""))
+        CHECK(entry.path().filename().string().find("out.stipple") == std::string::npos);
+}
+
 TEST_CASE("a conversion on disk that is stopped keeps its checkpoint, and goes on to the same bytes",
           "[failures]") {
     TemporaryFolder folder;

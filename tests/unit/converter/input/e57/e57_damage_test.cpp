@@ -191,6 +191,25 @@ TEST_CASE("a file that is another one than when it was opened is refused") {
     CHECK(second.error().code == ErrorCode::changed);
 }
 
+TEST_CASE("opening and reading a file end when they are told to stop") {
+    TemporaryFolder folder;
+    std::string path = writeBytes(folder.file("a.e57"), smallFile().bytes());
+    std::atomic<bool> stop{true};
+    auto refused = openE57Input(path, {.stop = &stop});
+    REQUIRE(!refused.ok());
+    CHECK(refused.error().code == ErrorCode::cancelled);
+    stop = false;
+    auto input = openE57Input(path, {.stop = &stop});
+    REQUIRE(input.ok());
+    auto stream = (*input)->openPart(0);
+    REQUIRE(stream.ok());
+    stop = true;
+    PointBatch batch;
+    Status read = (*stream)->next(batch);
+    REQUIRE(!read.ok());
+    CHECK(read.error().code == ErrorCode::cancelled);
+}
+
 TEST_CASE("E57 files of other programs are read, and the damaged one is refused") {
     STIPPLE_NEEDS_DATA();
     auto bunny = readE57(dataPath("other/bunnyInt32.e57"));
