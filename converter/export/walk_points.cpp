@@ -45,6 +45,7 @@ Bytes rowsOf(const Bytes& column, const std::vector<std::uint32_t>& rows, std::s
 
 // A node's points, chosen; encoded unless there are too many for one piece.
 struct Chosen {
+    int level = 0;
     std::uint64_t nodePoints = 0;
     bool tested = false;
     CloudFilter::Dropped dropped;
@@ -113,6 +114,13 @@ class Walk {
         isEnough_ = options_.limit > 0 && certain_ >= options_.limit;
     }
 
+    void addTaken(int level, std::uint64_t points) {
+        counters_.pointsTaken += points;
+        LevelTally& tally = counters_.levels[static_cast<std::size_t>(level)];
+        tally.nodes += points > 0;
+        tally.points += points;
+    }
+
     Status visit(const NodeEntry& entry) {
         using Verdict = CloudFilter::Verdict;
         Verdict verdict = filter_.verdictOn(entry);
@@ -130,7 +138,7 @@ class Walk {
             counters_.whole.add(entry);
             addCertain(entry.pointCount);
             if (!sink_) {
-                counters_.pointsTaken += entry.pointCount;
+                addTaken(entry.key.level, entry.pointCount);
                 return {};
             }
             break;
@@ -179,6 +187,7 @@ class Walk {
                              node.entry.pointCount),
                          name_, ""};
         Chosen chosen;
+        chosen.level = node.entry.key.level;
         chosen.nodePoints = batch.size();
         chosen.tested = tested;
         if (tested)
@@ -234,7 +243,7 @@ class Walk {
             addCertain(chosen.taken);
         if (sink_ && options_.limit > 0)
             cut(chosen);
-        counters_.pointsTaken += chosen.taken;
+        addTaken(chosen.level, chosen.taken);
         counters_.dropped.bySpacing += chosen.dropped.bySpacing;
         counters_.dropped.byRegion += chosen.dropped.byRegion;
         counters_.dropped.byAttribute += chosen.dropped.byAttribute;

@@ -9,6 +9,7 @@
 #include "converter/export/point_sink.hpp"
 #include "shared/format/cloud_file.hpp"
 
+#include <array>
 #include <atomic>
 #include <functional>
 
@@ -26,6 +27,11 @@ struct NodeTally {
     friend bool operator==(const NodeTally&, const NodeTally&) = default;
 };
 
+// Of one level: the points taken, and the nodes that they are of.
+struct LevelTally {
+    std::uint64_t nodes = 0, points = 0;
+};
+
 // What was done and what was not needed. Nodes whose hierarchy chunk was not read are in no tally but
 // in hierarchy.chunksSkipped.
 struct WalkCounters {
@@ -37,8 +43,9 @@ struct WalkCounters {
     CloudFilter::Dropped dropped;     // points of tested nodes
     std::uint64_t droppedByLimit = 0; // points of nodes read
     std::uint64_t pointsTaken = 0;
-    std::uint64_t bytesRead = 0;             // of nodes
-    std::uint64_t attributeBytesSkipped = 0; // blocks of nodes read whose attributes nobody asked for
+    std::array<LevelTally, maxLevel + 1> levels{}; // of pointsTaken
+    std::uint64_t bytesRead = 0;                   // of nodes
+    std::uint64_t attributeBytesSkipped = 0;       // blocks of nodes read whose attributes nobody asked for
     HierarchyCounters hierarchy;
 };
 

@@ -9,6 +9,8 @@
 #include "server/api/node_endpoint.hpp"
 #include "server/api/points_endpoint.hpp"
 #include "server/api/points_parameters.hpp"
+#include "server/api/statistics_endpoint.hpp"
+#include "server/api/statistics_parameters.hpp"
 
 #include <array>
 
@@ -96,6 +98,14 @@ std::span<const Endpoint> endpoints() {
                  .formats = json,
                  .schema = "Nearest",
                  .example = "point=0,0,0&count=2"},
+        Endpoint{.path = "/clouds/{id}/statistics",
+                 .answer = answerStatistics,
+                 .name = "getStatistics",
+                 .summary = "How many points there are, where, and what values they have",
+                 .parameters = statisticsParameters,
+                 .formats = json,
+                 .schema = "Statistics",
+                 .example = "box=-1e7,-1e7,1e7,1e7&bins=10"},
         Endpoint{.path = "/problems/{name}",
                  .answer = answerProblemType,
                  .name = "getProblemType",

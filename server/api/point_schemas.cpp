@@ -78,6 +78,143 @@ const std::string_view pointSchemas = R"json({
     },
     "additionalProperties": false
 },
+"Statistics": {
+    "type": "object",
+    "required": ["id", "version", "isComputed", "pointCount", "bounds", "density", "levels", "coordinates",
+                 "attributes"],
+    "properties": {
+        "id": {"type": "string"},
+        "version": {"$ref": "#/components/schemas/Version"},
+        "isComputed": {"type": "boolean", "description": "From points that were read; else told by the file"},
+        "pointCount": {"type": "integer", "minimum": 0},
+        "bounds": {
+            "description": "Of these points; null if there are none",
+            "oneOf": [{"$ref": "#/components/schemas/Box"}, {"type": "null"}]
+        },
+        "density": {
+            "description": "Over the bounds, in plan; null if these have no area",
+            "oneOf": [
+                {"type": "null"},
+                {
+                    "type": "object",
+                    "required": ["area", "pointsPerArea"],
+                    "properties": {
+                        "area": {"type": "number", "description": "In squares of the cloud's unit"},
+                        "pointsPerArea": {"type": "number"},
+                        "pointsPerSquareMeter": {"type": "number", "description": "Where the unit is known"}
+                    },
+                    "additionalProperties": false
+                }
+            ]
+        },
+        "levels": {
+            "description": "Those that have some of these points",
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["level", "spacing", "nodes", "points"],
+                "properties": {
+                    "level": {"type": "integer", "minimum": 0},
+                    "spacing": {"type": ["number", "null"]},
+                    "nodes": {"type": "integer", "minimum": 1},
+                    "points": {"type": "integer", "minimum": 1}
+                },
+                "additionalProperties": false
+            }
+        },
+        "coordinates": {
+            "description": "X, Y and Z; mean and deviation if computed",
+            "type": "array", "minItems": 3, "maxItems": 3,
+            "items": {"$ref": "#/components/schemas/ValueStatistics", "unevaluatedProperties": false}
+        },
+        "attributes": {"type": "array", "items": {"$ref": "#/components/schemas/AttributeStatistics"}},
+        "classes": {
+            "description": "Of the attribute Classification",
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["class", "name", "points"],
+                "properties": {
+                    "class": {"type": "integer"},
+                    "name": {"type": "string", "description": "As LAS 1.4 has it"},
+                    "points": {"type": "integer", "minimum": 1}
+                },
+                "additionalProperties": false
+            }
+        },
+        "returns": {
+            "type": "object",
+            "properties": {
+                "numbers": {
+                    "description": "Points by Return Number",
+                    "type": "array",
+                    "items": {
+                        "type": "object",
+                        "required": ["return", "points"],
+                        "properties": {"return": {"type": "integer"}, "points": {"type": "integer", "minimum": 1}},
+                        "additionalProperties": false
+                    }
+                },
+                "pulses": {
+                    "description": "Points by Number of Returns",
+                    "type": "array",
+                    "items": {
+                        "type": "object",
+                        "required": ["returns", "points"],
+                        "properties": {"returns": {"type": "integer"}, "points": {"type": "integer", "minimum": 1}},
+                        "additionalProperties": false
+                    }
+                }
+            },
+            "additionalProperties": false
+        }
+    },
+    "additionalProperties": false
+},
+"ValueStatistics": {
+    "description": "Of values that stored ones mean, without \"no value\" and NaN. Null is infinite",
+    "type": "object",
+    "required": ["name"],
+    "properties": {
+        "name": {"type": "string"},
+        "count": {"type": "integer", "minimum": 0, "description": "Of values, where it is known"},
+        "min": {"type": ["number", "null"]},
+        "max": {"type": ["number", "null"]},
+        "mean": {"type": ["number", "null"]},
+        "deviation": {"type": ["number", "null"], "description": "Standard deviation of all of them"},
+        "histogram": {
+            "description": "counts[i] values lie in edges[i] <= value < edges[i + 1]; in the last interval its end, too",
+            "type": "object",
+            "required": ["edges", "counts"],
+            "properties": {
+                "edges": {"type": "array", "minItems": 2, "items": {"type": "number"}},
+                "counts": {"type": "array", "minItems": 1, "items": {"type": "integer", "minimum": 0}}
+            },
+            "additionalProperties": false
+        }
+    }
+},
+"AttributeStatistics": {
+    "$ref": "#/components/schemas/ValueStatistics",
+    "type": "object",
+    "required": ["type", "components", "unit"],
+    "properties": {
+        "type": {"$ref": "#/components/schemas/AttributeType"},
+        "components": {"type": "integer", "minimum": 1, "maximum": 255},
+        "unit": {"type": "string"},
+        "values": {
+            "description": "Every value and how many points have it, if there are at most 256",
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["value", "points"],
+                "properties": {"value": {"type": "number"}, "points": {"type": "integer", "minimum": 1}},
+                "additionalProperties": false
+            }
+        }
+    },
+    "unevaluatedProperties": false
+},
 "Nearest": {
     "type": "object",
     "required": ["id", "version", "points", "read"],

@@ -75,12 +75,12 @@ TEST_CASE("a client that leaves ends the work, whatever the format") {
         writeCloud((folder.clouds() / "large.stipple").string(), 3'000'000, 7);
         return server::SiteOptions();
     });
-    for (const char* format : {"las", "csv", "ply", "laz"}) {
-        INFO(format);
+    for (const char* what : {"points?format=las", "points?format=csv", "points?format=ply",
+                             "points?format=laz", "statistics?bins=1000"}) {
+        INFO(what);
         auto client = std::make_unique<RawClient>(server.port());
         client->setReceiveBuffer(4096);
-        client->send(
-            cat("GET /api/v1/clouds/large/points?format=", format, " HTTP/1.1\r\nHost: localhost\r\n\r\n"));
+        client->send(cat("GET /api/v1/clouds/large/", what, " HTTP/1.1\r\nHost: localhost\r\n\r\n"));
         auto begin = Clock::now();
         while (server.server().jobCounts().running == 0 && Clock::now() - begin < std::chrono::seconds(10))
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
