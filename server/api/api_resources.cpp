@@ -19,6 +19,7 @@ std::string folderOf(const ApiLimits& limits) {
 ApiResources::ApiResources(const ApiLimits& chosen)
     : limits(chosen), hierarchy(chosen.hierarchyCacheBytes),
       scratch(std::make_shared<ScratchSpace>(folderOf(chosen), chosen.scratchBytes)),
+      pictureRate(std::make_shared<ClientRate>(chosen.picturesPerMinute)),
       pictures_(std::make_unique<PictureService>()) {}
 
 ApiResources::~ApiResources() = default;

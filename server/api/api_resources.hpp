@@ -4,6 +4,7 @@
 
 #include "server/api/hierarchy_cache.hpp"
 #include "server/files/scratch_space.hpp"
+#include "server/http/client_rate.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -25,6 +26,7 @@ struct ApiLimits {
     PointLimits points = {};
     std::string scratchFolder = {};           // for answers made as files (LAZ); empty: the system's
     std::uint64_t scratchBytes = 16ull << 30; // of all of them at once
+    double picturesPerMinute = 60;            // drawn for one client; kept ones do not count. 0: any number
 };
 
 class ApiResources {
@@ -36,6 +38,7 @@ class ApiResources {
     HierarchyCache hierarchy;
     const std::shared_ptr<ScratchSpace> scratch;
     PictureService& pictures() const { return *pictures_; }
+    const std::shared_ptr<ClientRate> pictureRate;
 
   private:
     std::unique_ptr<PictureService> pictures_;

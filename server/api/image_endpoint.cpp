@@ -43,7 +43,8 @@ Answer answerImage(const ApiCall& call) {
                                                          format->name, writer.isStopped()));
                    writer.answer(pictureResponse(*format, validity, *picture));
                    return {};
-               }};
+               },
+               call.resources.pictureRate};
 }
 
 } // namespace stipple::server

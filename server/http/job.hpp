@@ -2,12 +2,14 @@
 // connection lives on, and sent while it is being made.
 #pragma once
 
+#include "server/http/client_rate.hpp"
 #include "server/http/message.hpp"
 #include "shared/base/bytes.hpp"
 #include "shared/base/result.hpp"
 
 #include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -39,6 +41,8 @@ struct Job {
     // cut, so that the client sees that the answer is not complete. What it captures it owns (the request's
     // views do not outlive the look-up).
     std::function<Status(AnswerWriter&)> run;
+    // How often a client may have such an answer; null: as often as it likes. Beyond it: 429.
+    std::shared_ptr<ClientRate> rate = nullptr;
 };
 
 using Answer = std::variant<HttpResponse, Job>;

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t pieceBytes = 256 * 1024; // for each of which the limit on progress holds
 
-HttpResponse retryLater(HttpResponse problem, const char* seconds) {
-    problem.set("Retry-After", seconds);
+HttpResponse retryLater(HttpResponse problem, std::string seconds) {
+    problem.set("Retry-After", std::move(seconds));
     return problem;
 }
 
@@ -26,7 +26,7 @@ HttpResponse serverIsBusy() {
 
 JobAnswer::JobAnswer(Loop& loop, Stream& stream, std::string client, Job job, bool headOnly)
     : loop_(loop), stream_(stream), client_(std::move(client)),
-      wake_(std::make_shared<Timer>(loop.context())), headOnly_(headOnly) {
+      wake_(std::make_shared<Timer>(loop.context())), rate_(job.rate), headOnly_(headOnly) {
     auto onNews = [wake = wake_, &context = loop.context()] {
         net::post(context, [wake] { wake->cancel(); });
     };
@@ -42,6 +42,17 @@ JobAnswer::~JobAnswer() {
         loop_.state().jobs.withdraw(run_);
 }
 
+std::optional<HttpResponse> JobAnswer::rateRefusal() const {
+    if (!rate_)
+        return std::nullopt;
+    auto wait = rate_->take(client_, std::chrono::steady_clock::now());
+    if (wait.count() == 0)
+        return std::nullopt;
+    return retryLater(problemResponse({problem_types::tooManyRequests,
+                                       cat("no more than ", rate_->perMinute(), " such requests a minute")}),
+                      std::to_string(wait.count()));
+}
+
 std::optional<HttpResponse> JobAnswer::refusal(JobPool::Admission admission) const {
     if (admission == JobPool::Admission::clientIsBusy)
         return retryLater(problemResponse({problem_types::tooManyRequests,
@@ -54,6 +65,8 @@ std::optional<HttpResponse> JobAnswer::refusal(JobPool::Admission admission) con
 }
 
 Task<std::optional<HttpResponse>> JobAnswer::wait() {
+    if (auto tooOften = rateRefusal())
+        co_return tooOften;
     submitted_ = std::chrono::steady_clock::now();
     auto refused = refusal(loop_.state().jobs.submit(client_, run_));
     if (refused)

@@ -39,6 +39,7 @@ class JobAnswer {
   private:
     Task<void> nextNews();
     void appendPiece(std::string_view piece, bool isLast);
+    std::optional<HttpResponse> rateRefusal() const;
     std::optional<HttpResponse> refusal(JobPool::Admission admission) const;
     bool isOverTime() const;
     HttpResponse overTimeProblem() const;
@@ -48,6 +49,7 @@ class JobAnswer {
     std::string client_;
     std::shared_ptr<Timer> wake_; // shared with what other threads post
     std::shared_ptr<JobRun> run_;
+    std::shared_ptr<ClientRate> rate_; // of the job's kind, or null
     std::chrono::steady_clock::time_point submitted_;
     const bool headOnly_;
     bool isSubmitted_ = false, isStreamed_ = false;

@@ -1,6 +1,7 @@
 #include "server/site/site.hpp"
 
 #include "server/api/api.hpp"
+#include "server/api/picture_service.hpp"
 #include "server/http/problem.hpp"
 #include "server/http/representation.hpp"
 #include "server/site/cloud_address.hpp"
@@ -151,6 +152,7 @@ std::vector<Measurement> Site::measurements() const {
         add("bytes", "Held", false, counts.bytes);
     };
     addCache("hierarchy", resources_->hierarchy.counts());
+    addCache("pictures", resources_->pictures().counts());
     return all;
 }
 

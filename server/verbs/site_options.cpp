@@ -21,6 +21,12 @@ void addApiOptions(CLI::App& verb, ApiLimits& limits) {
         ->check(CLI::Range(1, 64))
         ->capture_default_str()
         ->group("Limits");
+    verb.add_option(
+            "--pictures-per-minute", limits.picturesPerMinute,
+            "Pictures that are drawn for one client in a minute, on average; more: 429. 0: any number")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str()
+        ->group("Limits");
     addBytes(verb, "--temp-bytes", limits.scratchBytes,
              "Bytes of all answers that are made as files (LAZ) and not sent yet (default: 16G); more: 503");
     verb.add_option("--temp", limits.scratchFolder,

@@ -13,7 +13,7 @@ before(async () => {
     await makeTown(folder.path, { points: 3_000, name: 'plant' });
     await stipple('access', 'protect', access, 'plant');
     token = (await stipple('access', 'add', access, 'plant', '--name', 'Lisa', '--for', '1d')).match(/stp_\S+|\S{40,}/)[0];
-    server = await serve(`${folder.path}/town.stipple`, `${folder.path}/plant.stipple`, '--access', access, '--metrics', 'local');
+    server = await serve(`${folder.path}/town.stipple`, `${folder.path}/plant.stipple`, '--access', access, '--metrics', 'local', '--pictures-per-minute', '0');
     description = await Description.of(server.address);
     gets = description.operations('get');
 });

@@ -10,7 +10,7 @@ let folder, server, description, gets;
 before(async () => {
     folder = await scratchFolder();
     await makeTown(folder.path, { points: 40_000 });
-    server = await serve(`${folder.path}/town.stipple`, '--metrics', 'local');
+    server = await serve(`${folder.path}/town.stipple`, '--metrics', 'local', '--pictures-per-minute', '0');
     description = await Description.of(server.address);
     gets = description.operations('get');
 });

@@ -1,8 +1,10 @@
+#include "client/headless/png.hpp"
 #include "server/api/image_request.hpp"
 #include "server/api/picture_service.hpp"
 #include "tests/unit/server/api/api_fixture.hpp"
 
 #include <catch2/catch.hpp>
+#include <webp/decode.h>
 
 using namespace stipple;
 using namespace stipple::server;
@@ -29,6 +31,28 @@ std::string faultOf(const std::string& query) {
     return request ? "none" : request.error().where;
 }
 
+// Red, green and blue of each pixel, as other readers find them.
+Bytes pixelsOfWebp(const std::string& file) {
+    int width = 0, height = 0;
+    auto* bytes = reinterpret_cast<const std::uint8_t*>(file.data());
+    std::uint8_t* decoded = WebPDecodeRGB(bytes, file.size(), &width, &height);
+    REQUIRE(decoded != nullptr);
+    Bytes pixels(decoded, decoded + 3 * width * height);
+    WebPFree(decoded);
+    return pixels;
+}
+Bytes pixelsOfPng(const std::string& file) {
+    TemporaryFolder folder;
+    writeText(folder.file("a.png"), file);
+    auto image = headless::readPng(folder.file("a.png"));
+    REQUIRE(image.ok());
+    Bytes pixels;
+    for (std::size_t i = 0; i < image->rgba.size(); ++i)
+        if (i % 4 != 3)
+            pixels.push_back(image->rgba[i]);
+    return pixels;
+}
+
 } // namespace
 
 TEST_CASE("a picture is a PNG or a WebP of the size asked for") {
@@ -43,6 +67,7 @@ TEST_CASE("a picture is a PNG or a WebP of the size asked for") {
     CHECK(webp.field("Content-Type") == "image/webp");
     CHECK(webp.body.starts_with("RIFF"));
     CHECK(webp.body.substr(8, 4) == "WEBP");
+    CHECK((pixelsOfWebp(webp.body) == pixelsOfPng(png.body)));
     CHECK(api.ask(tiny, {{"Accept", "image/webp,image/*;q=0.8"}}).field("Content-Type") == "image/webp");
     CHECK(api.ask(tiny, {{"Accept", "application/json"}}).status == 406);
 }
