@@ -20,6 +20,10 @@ constexpr const char* table = R"json([
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}},
 {"name": "all-nodes", "about": "default, without the limit on the size of nodes", "sweep": true,
  "limits": {"minNodePixels": 0}},
+{"name": "continuous", "about": "default, with continuous detail", "sweep": true,
+ "style": {"detail": {"mode": "continuous"}}},
+{"name": "continuous-spacing", "about": "continuous detail, circles as wide as the target spacing, no lighting", "sweep": true,
+ "style": {"detail": {"mode": "continuous"}, "sizeMode": "spacing", "edl": {"enabled": false}}},
 {"name": "circles", "about": "circles of 2 pixels, no lighting", "style": {"edl": {"enabled": false}}},
 {"name": "squares-3", "about": "squares of 3 pixels, no lighting",
  "style": {"sizePixels": 3, "shape": "square", "edl": {"enabled": false}}},
@@ -29,6 +33,8 @@ constexpr const char* table = R"json([
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
 {"name": "gles-default", "about": "default, with OpenGL ES", "backend": "gles"},
+{"name": "gles-continuous", "about": "default, with continuous detail and OpenGL ES", "backend": "gles",
+ "style": {"detail": {"mode": "continuous"}}},
 {"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
 ])json";

@@ -19,10 +19,13 @@ struct FrameCounters {
     std::uint64_t pointsConsidered = 0;    // points of nodes in view and large enough, as far as was looked
     std::uint64_t pointsSelected = 0;      // points of selected nodes
     std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
-    std::uint64_t chunksWaiting = 0;       // hierarchy chunks wanted, not here yet
-    std::uint64_t passesRun = 0;           // full-screen or geometry passes of the renderer
-    std::uint64_t passesSkipped = 0;       // passes a setting made unnecessary
-    bool complete = false;                 // everything the selection wants is drawn
+    std::uint64_t pointsExpected = 0;      // continuous detail: how many of them are likely to show
+    std::uint64_t pointsTooFine = 0; // of selected nodes, skipped: finer than continuous detail asks for
+    std::uint64_t chunksWaiting = 0; // hierarchy chunks wanted, not here yet
+    std::uint64_t passesRun = 0;     // full-screen or geometry passes of the renderer
+    std::uint64_t passesSkipped = 0; // passes a setting made unnecessary
+    double detailPixels = 0;         // continuous detail: target spacing; 0 with discrete levels
+    bool complete = false;           // everything the selection wants is drawn
 };
 
 // Since the session began.

@@ -65,6 +65,7 @@ struct FramePlan {
     int width = 0, height = 0; // pixels
     ViewTransform view;
     Style style;                 // ranges are resolved: min < max where the mode needs one
+    double detailPixels = 0;     // continuous detail: the target spacing in pixels; 0: draw whole prefixes
     std::vector<DrawNode> nodes; // near to far or any order; the picture does not depend on it
     FrameCounters counters;      // the renderer adds passesRun and passesSkipped
 };

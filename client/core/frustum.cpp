@@ -1,5 +1,6 @@
 #include "client/core/frustum.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,40 @@ namespace stipple {
 namespace {
 // Relative slack for what rounding can do to a projection; far above 2^-53, far below a pixel.
 constexpr double slack = 1e-12;
+
+// A rectangle clipped by four planes has at most eight corners.
+struct Polygon {
+    std::array<Vec3d, 8> corners;
+    std::size_t count = 0;
+    void add(Vec3d corner) { corners[std::min(count++, corners.size() - 1)] = corner; }
+};
+
+// The part on the side of the plane through the origin that `normal` points to.
+Polygon clipped(const Polygon& polygon, Vec3d normal) {
+    Polygon result;
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        Vec3d from = polygon.corners[i], to = polygon.corners[(i + 1) % polygon.count];
+        double a = dot(from, normal), b = dot(to, normal);
+        if (a >= 0)
+            result.add(from);
+        if ((a < 0) != (b < 0))
+            result.add(from + (to - from) * (a / (a - b)));
+    }
+    return result;
+}
+
+Polygon faceOf(Vec3d low, Vec3d high, int axis, bool upper) {
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Polygon face;
+    for (int corner : {0, 1, 3, 2}) { // around
+        Vec3d at;
+        at[axis] = upper ? high[axis] : low[axis];
+        at[u] = corner & 1 ? high[u] : low[u];
+        at[v] = corner & 2 ? high[v] : low[v];
+        face.add(at);
+    }
+    return face;
+}
 } // namespace
 
 Frustum::Frustum(const ViewTransform& view) : view_(view) {
@@ -40,6 +75,27 @@ bool Frustum::intersects(const BoxD& box) const {
         if (separates(axis, centre, half))
             return false;
     return true;
+}
+
+double Frustum::nearestDistance(const BoxD& box) const {
+    if (box.contains(view_.eye))
+        return 0;
+    Vec3d low = box.min - view_.eye, high = box.max - view_.eye;
+    double nearest = HUGE_VAL;
+    for (int face = 0; face < 6; ++face) {
+        Polygon part = faceOf(low, high, face / 2, face % 2);
+        for (std::size_t side = 0; side < 4 && part.count > 0; ++side)
+            part = clipped(part, axes_[side]);
+        for (std::size_t i = 0; i < part.count; ++i)
+            nearest = std::min(nearest, dot(part.corners[i], view_.forward));
+    }
+    if (nearest < HUGE_VAL)
+        return std::max(nearest, 0.0);
+    Vec3d half = (high - low) * 0.5;
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        reach += std::abs(view_.forward[axis]) * half[axis];
+    return std::max(dot(low + half, view_.forward) - reach, 0.0);
 }
 
 bool Frustum::separates(Vec3d axis, Vec3d centre, Vec3d half) const {

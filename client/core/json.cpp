@@ -35,9 +35,14 @@ constexpr Names<GradientName, 6> gradients{{
     {"grey", GradientName::grey},
     {"terrain", GradientName::terrain},
 }};
-constexpr Names<PointSizeMode, 2> sizeModes{{
+constexpr Names<PointSizeMode, 3> sizeModes{{
     {"fixed", PointSizeMode::fixed},
     {"world", PointSizeMode::world},
+    {"spacing", PointSizeMode::spacing},
+}};
+constexpr Names<DetailMode, 2> detailModes{{
+    {"discrete", DetailMode::discrete},
+    {"continuous", DetailMode::continuous},
 }};
 constexpr Names<PointShape, 2> shapes{{
     {"square", PointShape::square},
@@ -57,6 +62,14 @@ json vectorJson(const Vec3d& v) {
 
 json rangeJson(const Range& range) {
     return range.min == range.max ? json(nullptr) : json::array({range.min, range.max});
+}
+
+void readDetail(FieldReader& fields, Detail& detail) {
+    fields.choice("mode", detail.mode, detailModes);
+    fields.number("spacingPixels", detail.spacingPixels, 0.01, 1000);
+    fields.number("growthRange", detail.growthRange, 0, 0.99);
+    fields.number("peripheralFalloff", detail.peripheralFalloff, 0, 1);
+    fields.number("peripheralDensity", detail.peripheralDensity, 0.01, 1);
 }
 
 void readEdl(FieldReader& fields, EyeDomeLighting& edl) {
@@ -111,11 +124,13 @@ Result<Style> detail::readStyle(const json& value, const Style& base) {
     fields.choice("sizeMode", style.sizeMode, sizeModes);
     fields.number("sizePixels", style.sizePixels, 0.01, 1000);
     fields.number("sizeWorld", style.sizeWorld, 0, 1e15);
+    fields.number("sizeSpacings", style.sizeSpacings, 0, 1000);
     fields.number("minSizePixels", style.minSizePixels, 0.01, 1000);
     fields.number("maxSizePixels", style.maxSizePixels, 0.01, 1000);
     if (style.minSizePixels > style.maxSizePixels)
         fields.fail("minSizePixels", "must not exceed maxSizePixels");
     fields.choice("shape", style.shape, shapes);
+    fields.object("detail", [&](FieldReader& detail) { readDetail(detail, style.detail); });
     fields.object("edl", [&](FieldReader& edl) { readEdl(edl, style.edl); });
     fields.bytes("background", style.background);
     STIPPLE_CHECK(fields.finish());
@@ -168,6 +183,11 @@ json toJson(const Style& style) {
                 {"neighbours", style.edl.neighbours},
                 {"radiusPixels", style.edl.radiusPixels},
                 {"strength", style.edl.strength}};
+    json detail = {{"mode", nameOf(detailModes, style.detail.mode)},
+                   {"spacingPixels", style.detail.spacingPixels},
+                   {"growthRange", style.detail.growthRange},
+                   {"peripheralFalloff", style.detail.peripheralFalloff},
+                   {"peripheralDensity", style.detail.peripheralDensity}};
     return {{"colourMode", nameOf(colourModes, style.colourMode)},
             {"gradient", nameOf(gradients, style.gradient)},
             {"intensityRange", rangeJson(style.intensityRange)},
@@ -175,9 +195,11 @@ json toJson(const Style& style) {
             {"sizeMode", nameOf(sizeModes, style.sizeMode)},
             {"sizePixels", style.sizePixels},
             {"sizeWorld", style.sizeWorld},
+            {"sizeSpacings", style.sizeSpacings},
             {"minSizePixels", style.minSizePixels},
             {"maxSizePixels", style.maxSizePixels},
             {"shape", nameOf(shapes, style.shape)},
+            {"detail", detail},
             {"edl", edl},
             {"background", style.background}};
 }
@@ -204,9 +226,12 @@ json toJson(const FrameCounters& c) {
             {"pointsConsidered", c.pointsConsidered},
             {"pointsSelected", c.pointsSelected},
             {"pointsDrawn", c.pointsDrawn},
+            {"pointsExpected", c.pointsExpected},
+            {"pointsTooFine", c.pointsTooFine},
             {"chunksWaiting", c.chunksWaiting},
             {"passesRun", c.passesRun},
             {"passesSkipped", c.passesSkipped},
+            {"detailPixels", c.detailPixels},
             {"complete", c.complete}};
 }
 

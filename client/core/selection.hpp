@@ -10,6 +10,12 @@
 // their region finer than its surroundings and leave a hole where they end.
 //
 // Equal sizes are taken by cloud, then level, then key: same input, same selection.
+//
+// With continuous detail a node's prefix is what can show at the target spacing, best first means coarsest on
+// the screen first, and where that is more than a budget allows, the target grows, for all nodes alike, until
+// it is not: density stays even, no node is cut off. FrameCounters::detailPixels is the target then in force.
+// The point budget there is of points that are likely to show; up to four times as many may be sent to the
+// rasterizer.
 #pragma once
 
 #include "client/core/counters.hpp"
@@ -39,7 +45,9 @@ struct SelectionInput {
     std::span<const SelectionCloud> clouds;
     std::uint64_t pointBudget = 0;
     std::uint64_t byteBudget = 0;
-    double minNodePixels = 0; // the root of a cloud is wanted at any size
+    double minNodePixels = 0; // discrete detail; the root of a cloud is wanted at any size
+    double detailPixels =
+        0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
 };
 
 struct SelectedNode {

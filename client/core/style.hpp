@@ -8,7 +8,7 @@
 namespace stipple {
 
 enum class ColourMode : std::uint8_t { rgb, intensity, elevation };
-enum class PointSizeMode : std::uint8_t { fixed, world };
+enum class PointSizeMode : std::uint8_t { fixed, world, spacing };
 enum class PointShape : std::uint8_t { square, circle };
 enum class GradientName : std::uint8_t { viridis, turbo, inferno, spectral, grey, terrain };
 
@@ -25,16 +25,34 @@ struct EyeDomeLighting {
     friend bool operator==(const EyeDomeLighting&, const EyeDomeLighting&) = default;
 };
 
+enum class DetailMode : std::uint8_t { discrete, continuous };
+
+// How the density of points falls with distance: by whole nodes, or point by point
+// (client/core/continuous_detail.hpp; the fields below are its alone).
+struct Detail {
+    DetailMode mode = DetailMode::discrete;
+    double spacingPixels = 0.5; // wanted between neighbours; more where the point budget asks for it
+    double growthRange =
+        0.2; // 0..0.99: a point grows from nothing to full size over this part of the target spacing
+    // Density at the distance dc from the picture's centre (1 at the middle of each side): max(1 -
+    // peripheralFalloff · dc, peripheralDensity) of that at the centre, as a factor of the spacing (eq. 3;
+    // there 0.5 and 0.3). 0: the same everywhere.
+    double peripheralFalloff = 0, peripheralDensity = 0.3;
+    friend bool operator==(const Detail&, const Detail&) = default;
+};
+
 struct Style {
     ColourMode colourMode = ColourMode::rgb;
     GradientName gradient = GradientName::viridis; // of intensity and elevation
     Range intensityRange;                          // raw intensity
     Range elevationRange;                          // world units
     PointSizeMode sizeMode = PointSizeMode::fixed;
-    double sizePixels = 2;  // diameter, fixed mode
-    double sizeWorld = 0.1; // diameter in world units, world mode
+    double sizePixels = 2;     // diameter, fixed mode
+    double sizeWorld = 0.1;    // diameter in world units, world mode
+    double sizeSpacings = 1.5; // diameter in target spacings, spacing mode (continuous detail; else as fixed)
     double minSizePixels = 1, maxSizePixels = 64;
     PointShape shape = PointShape::circle;
+    Detail detail;
     EyeDomeLighting edl;
     std::array<std::uint8_t, 3> background{24, 26, 30};
     friend bool operator==(const Style&, const Style&) = default;

@@ -67,8 +67,9 @@ class Session final : public ViewSession {
     void setStyle(const Style& style) override {
         if (style == style_)
             return;
-        // Only another colour mode can change what has to be loaded.
-        (style.colourMode == style_.colourMode ? planDirty_ : dirty_) = true;
+        // Nothing else of a style changes what has to be loaded.
+        bool sameNeeds = style.colourMode == style_.colourMode && style.detail == style_.detail;
+        (sameNeeds ? planDirty_ : dirty_) = true;
         style_ = style;
     }
     const Style& style() const override { return style_; }
@@ -138,6 +139,7 @@ class Session final : public ViewSession {
         input.pointBudget = limits_.pointBudget;
         input.byteBudget = limits_.cacheBytes;
         input.minNodePixels = limits_.minNodePixels;
+        input.detailPixels = style_.detail.mode == DetailMode::continuous ? style_.detail.spacingPixels : 0;
         selection_ = select(input);
         selection_.counters.complete &= !loading_.anyOpening();
 
@@ -206,6 +208,7 @@ class Session final : public ViewSession {
         for (CloudId id : selectionIds_)
             metadata.push_back(loading_.clouds().at(id).opened.metadata);
         next.style = resolvedStyle(style_, metadata);
+        next.detailPixels = selection_.counters.detailPixels;
         next.counters = selection_.counters;
         next.counters.passesRun = plan_.counters.passesRun;
         next.counters.passesSkipped = plan_.counters.passesSkipped;
@@ -230,6 +233,7 @@ class Session final : public ViewSession {
             return x.node->id == y.node->id && x.pointCount == y.pointCount;
         };
         return a.width == b.width && a.height == b.height && a.view == b.view && a.style == b.style &&
+               a.detailPixels == b.detailPixels &&
                std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), sameNode);
     }
 

@@ -107,8 +107,8 @@ std::vector<std::string_view> neededAttributes(const Style& style, const CloudMe
 }
 
 double diameterOf(const Style& style, const View& view, double distance) {
-    double wanted = style.sizeMode == PointSizeMode::fixed ? style.sizePixels
-                                                           : style.sizeWorld * view.pixelsPerUnitAt(distance);
+    double wanted = style.sizeMode == PointSizeMode::world ? style.sizeWorld * view.pixelsPerUnitAt(distance)
+                                                           : style.sizePixels;
     double least = std::max(1.0, style.minSizePixels),
            most = std::max(least, std::min(255.0, style.maxSizePixels));
     return std::clamp(wanted, least, most);

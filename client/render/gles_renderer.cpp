@@ -26,6 +26,7 @@ struct PointProgram {
     GLint deep, fractionBits, lowX, highX, lowY, highY, origin;
     GLint centre, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
         sizeRange64, gradient;
+    GLint rank, continuous, growth, falloff, leastDensity, sizeByDensity;
 
     static Result<PointProgram> make(bool lowWords, bool circle) {
         std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
@@ -59,6 +60,12 @@ struct PointProgram {
         made.worldSize64 = at("uWorldSize64");
         made.sizeRange64 = at("uSizeRange64");
         made.gradient = at("uGradient");
+        made.rank = at("uRank");
+        made.continuous = at("uContinuous");
+        made.growth = at("uGrowth");
+        made.falloff = at("uFalloff");
+        made.leastDensity = at("uLeastDensity");
+        made.sizeByDensity = at("uSizeByDensity");
         made.program = std::move(program);
         return made;
     }
@@ -75,6 +82,11 @@ struct PointProgram {
         glUniform1f(worldSize64, frame.worldSize64);
         glUniform2f(sizeRange64, static_cast<float>(frame.minSize64), static_cast<float>(frame.maxSize64));
         glUniform1i(gradient, 0);
+        glUniform1i(continuous, frame.continuous);
+        glUniform1f(growth, frame.growth);
+        glUniform2f(falloff, frame.falloffX, frame.falloffY);
+        glUniform1f(leastDensity, frame.leastDensity);
+        glUniform1i(sizeByDensity, frame.sizeByDensity);
     }
 
     void setNode(const RasterNode& node) const {
@@ -95,6 +107,7 @@ struct PointProgram {
         }
         glUniform1i(colourSource, static_cast<GLint>(node.source));
         glUniform2f(ramp, node.rampScale, node.rampOffset);
+        glUniform2f(rank, node.rankBase, node.rankStep);
     }
 };
 

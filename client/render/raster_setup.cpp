@@ -1,5 +1,6 @@
 #include "client/render/raster_setup.hpp"
 
+#include "client/core/continuous_detail.hpp"
 #include "client/render/gradients.hpp"
 
 #include <algorithm>
@@ -23,6 +24,30 @@ Focal focalOf(const FramePlan& plan) {
 
 int sizeStepsOf(double pixels) {
     return static_cast<int>(std::lround(std::clamp(pixels, 1.0, double{maxPointPixels}) * sizeSteps));
+}
+
+// At distance 1 where size goes with distance; the same for all points elsewhere.
+double sizePixelsOf(const FramePlan& plan) {
+    const Style& style = plan.style;
+    if (style.sizeMode == PointSizeMode::world)
+        return style.sizeWorld * focalOf(plan).y;
+    if (style.sizeMode == PointSizeMode::spacing && plan.detailPixels > 0)
+        return style.sizeSpacings * plan.detailPixels;
+    return style.sizePixels;
+}
+
+void setDetail(const FramePlan& plan, RasterFrame& frame) {
+    const Detail& detail = plan.style.detail;
+    frame.continuous = plan.detailPixels > 0;
+    if (!frame.continuous)
+        return;
+    double rest = 1 - detail.growthRange;
+    // A range of 0 would divide by it: grown at once, as good as.
+    frame.growth = static_cast<float>(1 / std::max(1 - rest * rest, 1e-6));
+    frame.falloffX = static_cast<float>(detail.peripheralFalloff / (plan.width * 0.5));
+    frame.falloffY = static_cast<float>(detail.peripheralFalloff / (plan.height * 0.5));
+    frame.leastDensity = static_cast<float>(detail.peripheralDensity);
+    frame.sizeByDensity = plan.style.sizeMode == PointSizeMode::spacing && detail.peripheralFalloff > 0;
 }
 
 int depthShiftOf(std::uint32_t nearBits, std::uint32_t farBits) {
@@ -109,12 +134,13 @@ RasterFrame rasterFrame(const FramePlan& plan) {
 
     frame.minSize64 = sizeStepsOf(style.minSizePixels);
     frame.maxSize64 = std::max(frame.minSize64, sizeStepsOf(style.maxSizePixels));
-    double pixels =
-        style.sizeMode == PointSizeMode::fixed ? style.sizePixels : style.sizeWorld * focalOf(plan).y;
+    double pixels = sizePixelsOf(plan);
     frame.sizeByDistance = style.sizeMode == PointSizeMode::world && frame.perspective;
     frame.worldSize64 = static_cast<float>(pixels * sizeSteps);
     frame.size64 = std::clamp(sizeStepsOf(pixels), frame.minSize64, frame.maxSize64);
-    bool singlePixels = frame.sizeByDistance ? frame.maxSize64 == sizeSteps : frame.size64 == sizeSteps;
+    setDetail(plan, frame);
+    bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity;
+    bool singlePixels = (sizesDiffer ? frame.maxSize64 : frame.size64) == sizeSteps;
     frame.circle = style.shape == PointShape::circle && !singlePixels;
     return frame;
 }
@@ -133,6 +159,12 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
     raster.cell = node.cameraCell;
     raster.positionShift = node.node->positionShift;
     setDeep(plan, node, focal.x, focal.y, raster);
+    if (plan.detailPixels > 0) {
+        RankDensity density = rankDensity(node.node->key.level, node.spacing, node.node->totalPoints);
+        double target = plan.detailPixels / focal.y; // world units, at distance 1 in perspective
+        raster.rankBase = static_cast<float>(density.base * target * target);
+        raster.rankStep = static_cast<float>(density.step * target * target);
+    }
 
     raster.source = sourceOf(style.colourMode, *node.node);
     Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;

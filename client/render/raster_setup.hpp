@@ -20,6 +20,11 @@
 //            beyond.
 // Size       in whole 1/64 pixels, so half a size is even in 1/256 pixel and, X being odd, no pixel centre
 //            ever lies on the edge of a point: coverage needs no tie rule.
+// Detail     continuous (client/core/continuous_detail.hpp): the point of rank i in its node has
+//              q = (rankBase + rankStep · i) · d² / p²       orthographic: without "d²"
+//              p = max(1 - falloff · |(x, y) - centre| / centre, least density)          "/" per axis
+//            and is drawn where q < 1, with (1 - q) · growth of its size, at most all of it and at least a
+//            pixel.
 // Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
 //            point is covered always, so that no point vanishes between pixel centres.
 // Depth      step q = (bits(d) - bits(near)) >> depthShift, where bits() reads the float as an integer: a
@@ -75,7 +80,12 @@ struct RasterFrame {
     int size64 = 64;             // 1/64 pixel, clamped
     float worldSize64 = 0;       // 1/64 pixel at distance 1
     int minSize64 = 64, maxSize64 = 64;
-    bool circle = false; // false where every point is a single pixel
+    bool circle = false;     // false where every point is a single pixel
+    bool continuous = false; // continuous detail, see "Detail"
+    float growth = 0;
+    float falloffX = 0, falloffY = 0,
+          leastDensity = 1;     // p = max(1 - |(x - centreX) falloffX, …|, leastDensity)
+    bool sizeByDensity = false; // continuous, size64 / p: a multiple of the target spacing
 };
 
 struct RasterNode {
@@ -87,6 +97,7 @@ struct RasterNode {
     int fractionBits = 24;
     std::array<std::uint32_t, 3> lowX{}, highX{}, lowY{}, highY{};
     std::uint32_t originX = 0, originY = 0;
+    float rankBase = 0, rankStep = 0; // see "Detail"
     ColourSource source = ColourSource::words;
     // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
     // r.z for elevation.

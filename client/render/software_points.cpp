@@ -28,12 +28,16 @@ struct Block {
 };
 
 enum class Sizing { single, fixed, byDistance };
+// A point's rank in its node decides whether it is drawn and how far it has grown (raster_setup.hpp,
+// "Detail").
+enum class Ranking { prefix, continuous };
 // `deep`: orthographic, with positions by integers (raster_setup.hpp, "Deep nodes").
 enum class Placing { perspective, orthographic, deep };
 
 struct Words {
     const std::uint32_t* position;
     const std::uint32_t* low; // nullptr: no low words
+    std::uint32_t rank;       // of the first point in its node
 };
 
 STIPPLE_INLINE std::int32_t floorToInt(float value) {
@@ -73,7 +77,7 @@ STIPPLE_INLINE std::int32_t deepCell(float estimate, std::uint32_t exact, int fr
 static_assert(positionCells == 1 << 7);
 
 // One loop without branches over the block, for the vectorizer.
-template <Placing Place, bool LowWords, Sizing Size>
+template <Placing Place, bool LowWords, Sizing Size, Ranking Rank>
 STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, Words words,
                               std::size_t count, Block& block) {
     const float ax = node.rowX[0], bx = node.rowX[1], cx = node.rowX[2];
@@ -98,6 +102,11 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const float worldSize64 = frame.worldSize64;
     const auto minSize64 = static_cast<float>(frame.minSize64),
                maxSize64 = static_cast<float>(frame.maxSize64);
+    const float rankBase = node.rankBase, rankStep = node.rankStep, growth = frame.growth;
+    const float falloffX = frame.falloffX, falloffY = frame.falloffY, leastDensity = frame.leastDensity;
+    const auto fixedSize64 = static_cast<float>(frame.size64);
+    const float pixelSize64 = sizeSteps;
+    const bool sizeByDensity = frame.sizeByDensity;
 
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t w0 = words.position[2 * i], w1 = words.position[2 * i + 1];
@@ -124,6 +133,18 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             const float inverse = 1.0f / d;
             x = x * inverse;
             y = y * inverse;
+        }
+        [[maybe_unused]] float density = 1, grown = 1;
+        if constexpr (Rank == Ranking::continuous) {
+            const float offX = x * falloffX, offY = y * falloffY;
+            density = clampFloat(1.0f - std::sqrt(offX * offX + offY * offY), leastDensity, 1.0f);
+            const auto rank =
+                static_cast<float>(static_cast<std::int32_t>(words.rank + static_cast<std::uint32_t>(i)));
+            float q = (rankBase + rankStep * rank) / (density * density);
+            if constexpr (Place == Placing::perspective)
+                q = q * (d * d);
+            drawn = drawn & (q < 1.0f);
+            grown = clampFloat((1.0f - q) * growth, 0.0f, 1.0f);
         }
         x = x + centreX;
         y = y + centreY;
@@ -154,47 +175,57 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             block.y[i] = floorToInt(clampFloat(y, -positionLimit, positionLimit) * positionCells);
         }
         if constexpr (Size == Sizing::byDistance) {
-            const float size = worldSize64 * (1.0f / d) + 0.5f;
-            block.size64[i] = static_cast<std::int32_t>(clampFloat(size, minSize64, maxSize64));
+            const float size = clampFloat(worldSize64 * (1.0f / d) + 0.5f, minSize64, maxSize64);
+            block.size64[i] = static_cast<std::int32_t>(
+                Rank == Ranking::continuous ? clampFloat(size * grown, pixelSize64, maxSize64) : size);
+        } else if constexpr (Rank == Ranking::continuous && Size == Sizing::fixed) {
+            const float size =
+                sizeByDensity ? clampFloat(fixedSize64 / density, minSize64, maxSize64) : fixedSize64;
+            block.size64[i] = static_cast<std::int32_t>(clampFloat(size * grown, pixelSize64, maxSize64));
         }
     }
 }
 
 using Transform = void (*)(const RasterFrame&, const RasterNode&, Words, std::size_t, Block&);
 
-template <Placing P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z, Ranking R>
 void transformBaseline(const RasterFrame& frame, const RasterNode& node, Words words, std::size_t count,
                        Block& block) {
-    transform<P, L, Z>(frame, node, words, count, block);
+    transform<P, L, Z, R>(frame, node, words, count, block);
 }
 
 #ifdef STIPPLE_WIDE_VECTORS
-template <Placing P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z, Ranking R>
 __attribute__((target("avx2"))) void transformAvx2(const RasterFrame& frame, const RasterNode& node,
                                                    Words words, std::size_t count, Block& block) {
-    transform<P, L, Z>(frame, node, words, count, block);
+    transform<P, L, Z, R>(frame, node, words, count, block);
 }
 #endif
 
-template <Placing P, bool L, Sizing Z>
+template <Placing P, bool L, Sizing Z, Ranking R>
 Transform chosenTransform() {
 #ifdef STIPPLE_WIDE_VECTORS
     if (__builtin_cpu_supports("avx2"))
-        return transformAvx2<P, L, Z>;
+        return transformAvx2<P, L, Z, R>;
 #endif
-    return transformBaseline<P, L, Z>;
+    return transformBaseline<P, L, Z, R>;
 }
 
+template <Sizing Z, Ranking R, Placing P>
+Transform transformFor(const RasterNode& node) {
+    return node.positionShift > 0 ? chosenTransform<P, true, Z, R>() : chosenTransform<P, false, Z, R>();
+}
+template <Sizing Z, Ranking R>
+Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
+    if (frame.perspective)
+        return transformFor<Z, R, Placing::perspective>(node);
+    return node.deep ? transformFor<Z, R, Placing::deep>(node)
+                     : transformFor<Z, R, Placing::orthographic>(node);
+}
 template <Sizing Z>
 Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
-    bool low = node.positionShift > 0;
-    if (frame.perspective)
-        return low ? chosenTransform<Placing::perspective, true, Z>()
-                   : chosenTransform<Placing::perspective, false, Z>();
-    if (node.deep)
-        return low ? chosenTransform<Placing::deep, true, Z>() : chosenTransform<Placing::deep, false, Z>();
-    return low ? chosenTransform<Placing::orthographic, true, Z>()
-               : chosenTransform<Placing::orthographic, false, Z>();
+    return frame.continuous ? transformFor<Z, Ranking::continuous>(frame, node)
+                            : transformFor<Z, Ranking::prefix>(frame, node);
 }
 
 // The cell becomes the smaller of itself and `candidate`.
@@ -304,7 +335,7 @@ void placeSprites(const RasterFrame& frame, const Block& block, std::size_t coun
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
-        int size64 = frame.sizeByDistance ? block.size64[i] : frame.size64;
+        int size64 = frame.sizeByDistance || frame.continuous ? block.size64[i] : frame.size64;
         placeSprite<Shared>(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, 2 * size64,
                             (std::uint64_t{block.step[i]} << indexBits) | (index + i), cells);
     }
@@ -331,7 +362,7 @@ void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count,
 template <bool Shared>
 void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells) {
     Block block;
-    bool single = !frame.sizeByDistance && frame.size64 == sizeSteps;
+    bool single = !frame.sizeByDistance && !frame.sizeByDensity && frame.size64 == sizeSteps;
     Transform transformBlock = single                 ? transformFor<Sizing::single>(frame, *run.raster)
                                : frame.sizeByDistance ? transformFor<Sizing::byDistance>(frame, *run.raster)
                                                       : transformFor<Sizing::fixed>(frame, *run.raster);
@@ -339,12 +370,13 @@ void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* c
         std::size_t first = run.first + done;
         std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
         Words words{run.node->positionWords.data() + 2 * first,
-                    run.raster->positionShift > 0 ? run.node->positionLowWords.data() + first : nullptr};
+                    run.raster->positionShift > 0 ? run.node->positionLowWords.data() + first : nullptr,
+                    static_cast<std::uint32_t>(first)};
         transformBlock(frame, *run.raster, words, count, block);
         std::uint64_t index = run.index + done;
         if (single)
             placeSingle<Shared>(block, count, index, cells);
-        else if (frame.sizeByDistance)
+        else if (frame.sizeByDistance || frame.continuous)
             placeSprites<Shared>(frame, block, count, index, cells);
         else
             placeFixed<Shared>(frame, block, count, index, cells);

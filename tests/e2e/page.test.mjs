@@ -124,6 +124,14 @@ describe('the picture', () => {
             style: { colourMode: 'intensity', sizeMode: 'world', sizeWorld: 0.5, edl: { enabled: false } },
             tolerance: { share: 0.07, mean: 3.5 },
         },
+        'continuous detail, as wide as the spacing': {
+            style: {
+                detail: { mode: 'continuous', spacingPixels: 3, peripheralFalloff: 0.3 },
+                sizeMode: 'spacing',
+                edl: { enabled: false },
+            },
+            tolerance: { share: 0.07, mean: 3.5 },
+        },
     };
 
     for (const [name, { style, tolerance }] of Object.entries(looks)) {

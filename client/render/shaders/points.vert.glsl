@@ -27,6 +27,7 @@ uniform uvec3 uHighY;
 uniform uvec2 uOrigin;
 uniform int uColourSource; // ColourSource
 uniform vec2 uRamp;        // scale, offset
+uniform vec2 uRank;        // raster_setup.hpp, "Detail": base, step
 
 uniform vec2 uCentre; // half the picture, pixels
 uniform vec2 uNearFar;
@@ -37,6 +38,11 @@ uniform bool uSizeByDistance;
 uniform float uSize64;
 uniform float uWorldSize64;
 uniform vec2 uSizeRange64;
+uniform bool uContinuous; // raster_setup.hpp, "Detail"
+uniform float uGrowth;
+uniform vec2 uFalloff;
+uniform float uLeastDensity;
+uniform bool uSizeByDensity;
 uniform sampler2D uGradient;
 
 flat out vec4 vColour;
@@ -77,6 +83,11 @@ vec4 colourOf(vec3 r) {
     return aColour;
 }
 
+// What is outside the clip volume is not drawn: beyond the far plane.
+void discardPoint() {
+    gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+}
+
 void main() {
     uvec3 p = uvec3(aPosition.x & 0x1FFFFFu, (aPosition.x >> 21) | ((aPosition.y << 10) & 0x1FF800u),
                     aPosition.y >> 11);
@@ -95,18 +106,36 @@ void main() {
 #endif
     gl_PointSize = 1.0;
     if (!(d >= uNearFar.x && d <= uNearFar.y)) {
-        gl_Position = vec4(0.0, 0.0, 2.0, 1.0); // beyond the far plane: clipped
+        discardPoint();
         return;
     }
     float inverse = 1.0 / d;
     float scale = uPerspective ? inverse : 1.0;
-    vec2 window = vec2(along(uRowX, r), along(uRowY, r)) * scale + uCentre;
+    vec2 window = vec2(along(uRowX, r), along(uRowY, r)) * scale;
+    float density = 1.0, grown = 1.0;
+    if (uContinuous) {
+        vec2 off = window * uFalloff;
+        density = clamp(1.0 - sqrt(off.x * off.x + off.y * off.y), uLeastDensity, 1.0);
+        float q = (uRank.x + uRank.y * float(gl_VertexID)) / (density * density);
+        q = uPerspective ? q * (d * d) : q;
+        if (!(q < 1.0)) {
+            discardPoint();
+            return;
+        }
+        grown = clamp((1.0 - q) * uGrowth, 0.0, 1.0);
+    }
+    window = window + uCentre;
     window = clamp(window, vec2(-32768.0), vec2(32768.0));
     vec2 cell = uDeep ? vec2(deepCell(steps, window)) : floor(window * 128.0);
 
-    float size64 = uSizeByDistance
-                       ? floor(clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y))
-                       : uSize64;
+    float size64 = uSize64;
+    if (uSizeByDistance)
+        size64 = clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y);
+    else if (uSizeByDensity)
+        size64 = clamp(uSize64 / density, uSizeRange64.x, uSizeRange64.y);
+    if (uContinuous)
+        size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);
+    size64 = floor(size64);
     gl_PointSize = size64 * (1.0 / 64.0);
 #ifdef CIRCLE
     int radius = 2 * int(size64);

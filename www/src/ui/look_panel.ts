@@ -13,6 +13,7 @@ const gradients: [Style['gradient'], string][] = [
     ['terrain', 'Terrain'],
     ['grey', 'Grey'],
 ];
+const spacingSize: [Style['sizeMode'], string] = ['spacing', 'Spacings'];
 
 /** How the clouds are looked at: view, points, colour, light. */
 export class LookPanel extends ModelElement {
@@ -67,7 +68,7 @@ export class LookPanel extends ModelElement {
 
     private renderPoints(): TemplateResult {
         const { style, limits } = this.model;
-        const isFixed = style.sizeMode === 'fixed';
+        const isContinuous = style.detail.mode === 'continuous';
         return html`<fieldset>
             <legend>Points</legend>
             ${slider(
@@ -78,30 +79,41 @@ export class LookPanel extends ModelElement {
                 (pointBudget) => this.model.changeLimits({ pointBudget }),
             )}
             ${choice(
+                'Detail',
+                'detail',
+                style.detail.mode,
+                [
+                    ['discrete', 'Levels'],
+                    ['continuous', 'Continuous'],
+                ],
+                (mode) =>
+                    this.model.changeStyle({
+                        detail: { ...style.detail, mode },
+                        // Spacings are of continuous detail alone.
+                        ...(mode === 'discrete' && style.sizeMode === 'spacing' ? { sizeMode: 'fixed' } : {}),
+                    }),
+            )}
+            ${isContinuous
+                ? slider(
+                      'Spacing',
+                      style.detail.spacingPixels,
+                      { min: 0.5, max: 10, logarithmic: true, digits: 2 },
+                      `${style.detail.spacingPixels} px`,
+                      (spacingPixels) => this.model.changeStyle({ detail: { ...style.detail, spacingPixels } }),
+                  )
+                : ''}
+            ${choice(
                 'Size in',
                 'size-mode',
                 style.sizeMode,
                 [
                     ['fixed', 'Pixels'],
                     ['world', 'World'],
+                    ...(isContinuous ? [spacingSize] : []),
                 ],
                 (sizeMode) => this.model.changeStyle({ sizeMode }),
             )}
-            ${isFixed
-                ? slider(
-                      'Size',
-                      style.sizePixels,
-                      { min: 1, max: 20, logarithmic: true, digits: 2 },
-                      `${style.sizePixels} px`,
-                      (sizePixels) => this.model.changeStyle({ sizePixels }),
-                  )
-                : slider(
-                      'Size',
-                      style.sizeWorld,
-                      { min: 0.001, max: 10, logarithmic: true, digits: 2 },
-                      String(style.sizeWorld),
-                      (sizeWorld) => this.model.changeStyle({ sizeWorld }),
-                  )}
+            ${this.renderSize()}
             ${choice(
                 'Shape',
                 'shape',
@@ -113,6 +125,36 @@ export class LookPanel extends ModelElement {
                 (shape) => this.model.changeStyle({ shape }),
             )}
         </fieldset>`;
+    }
+
+    private renderSize(): TemplateResult {
+        const { style } = this.model;
+        switch (style.sizeMode) {
+            case 'fixed':
+                return slider(
+                    'Size',
+                    style.sizePixels,
+                    { min: 1, max: 20, logarithmic: true, digits: 2 },
+                    `${style.sizePixels} px`,
+                    (sizePixels) => this.model.changeStyle({ sizePixels }),
+                );
+            case 'world':
+                return slider(
+                    'Size',
+                    style.sizeWorld,
+                    { min: 0.001, max: 10, logarithmic: true, digits: 2 },
+                    String(style.sizeWorld),
+                    (sizeWorld) => this.model.changeStyle({ sizeWorld }),
+                );
+            case 'spacing':
+                return slider(
+                    'Size',
+                    style.sizeSpacings,
+                    { min: 0.5, max: 5, logarithmic: true, digits: 2 },
+                    `${style.sizeSpacings} ×`,
+                    (sizeSpacings) => this.model.changeStyle({ sizeSpacings }),
+                );
+        }
     }
 
     private renderColour(): TemplateResult {

@@ -18,12 +18,20 @@ export interface Style {
     gradient: 'viridis' | 'turbo' | 'inferno' | 'spectral' | 'grey' | 'terrain';
     intensityRange: [number, number] | null;
     elevationRange: [number, number] | null;
-    sizeMode: 'fixed' | 'world';
+    sizeMode: 'fixed' | 'world' | 'spacing';
     sizePixels: number;
     sizeWorld: number;
+    sizeSpacings: number;
     minSizePixels: number;
     maxSizePixels: number;
     shape: 'square' | 'circle';
+    detail: {
+        mode: 'discrete' | 'continuous';
+        spacingPixels: number;
+        growthRange: number;
+        peripheralFalloff: number;
+        peripheralDensity: number;
+    };
     edl: { enabled: boolean; neighbours: number; radiusPixels: number; strength: number };
     background: Vector;
 }

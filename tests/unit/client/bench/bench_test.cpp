@@ -111,16 +111,19 @@ TEST_CASE("with every point the renderers give the reference but for roundings",
         const char* mode;
         double mean, flip; // levels, FLIP
     };
-    const Bound bounds[] = {
-        {"pixels", 0.001, 0.0001}, {"squares-3", 0.003, 0.0005}, {"circles", 0.15, 0.008},
-        {"world", 0.05, 0.002},    {"default", 0.3, 0.008},      {"all-nodes", 0.3, 0.008},
-        {"edl-4", 0.3, 0.008},     {"intensity", 0.3, 0.012},    {"elevation", 0.3, 0.012}};
+    const Bound bounds[] = {{"pixels", 0.001, 0.0001}, {"squares-3", 0.003, 0.0005},
+                            {"circles", 0.15, 0.008},  {"world", 0.05, 0.002},
+                            {"default", 0.3, 0.008},   {"all-nodes", 0.3, 0.008},
+                            {"edl-4", 0.3, 0.008},     {"intensity", 0.3, 0.012},
+                            {"elevation", 0.3, 0.012}, {"continuous", 0.3, 0.008}};
     BenchOptions options = smallBench();
     options.modes.clear();
     for (const Bound& bound : bounds)
         options.modes.push_back(modesCalled({bound.mode})[0]);
-    for (Mode& mode : options.modes)
+    for (Mode& mode : options.modes) {
         mode.limits.minNodePixels = 0;
+        mode.style.detail.spacingPixels = 0.01; // continuous detail: all of them, fully grown
+    }
     options.pathNames = {"fly-over", "walk", "orbit", "jump", "dolly", "map"};
     options.budgets = {1'000'000};
     options.usualBudget = 1'000'000;
