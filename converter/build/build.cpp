@@ -4,6 +4,7 @@
 #include "converter/build/schedule.hpp"
 #include "converter/build/subtree_plan.hpp"
 #include "shared/base/text.hpp"
+#include "shared/format/picture_attributes.hpp"
 
 #include <algorithm>
 #include <map>
@@ -13,11 +14,18 @@ namespace stipple {
 
 namespace {
 constexpr std::uint64_t sortBytesPerPoint = 40; // keys and indices twice, ranks
+// Sums and means of colours: of the two fifths of the points or so that a level's nodes take from leaves.
+constexpr std::uint64_t colourBytesPerPoint = 16;
 constexpr std::uint64_t encodeBytes = std::uint64_t{1} << 25;
 constexpr std::size_t spacingSubtrees = 4; // of which the spacing is estimated
 
-std::uint64_t bytesPerPoint(const RowLayout& layout) {
-    return 2 * layout.rowBytes() + sortBytesPerPoint;
+std::uint64_t bytesPerPoint(const RowLayout& layout, const ColourRows& colours) {
+    return 2 * layout.rowBytes() + sortBytesPerPoint + (colours.channels() > 0 ? colourBytesPerPoint : 0);
+}
+
+ColourRows coloursToAverage(const CloudMetadata& metadata, const RowLayout& layout) {
+    return metadata.innerColour == InnerColour::mean ? ColourRows(layout, pictureAttributes(metadata))
+                                                     : ColourRows();
 }
 
 // A subtree to be built in a tier, or one that is ready for the next.
@@ -41,7 +49,10 @@ class Builder {
     Builder(Tiles& tiles, const CloudMetadata& metadata, const BuildOptions& options, ScratchFile& blocks,
             Journal& journal, const ConvertProgress& progress)
         : tiles_(tiles), metadata_(metadata), options_(options), blocks_(blocks), journal_(journal),
-          progress_(progress), mostPoints_(options.subtreeBytes / bytesPerPoint(tiles.layout)) {
+          progress_(progress), colours_(coloursToAverage(metadata, tiles.layout)),
+          sampleLayout_(tiles.layout.withExtra(colours_.sumBytes())),
+          mostPoints_(options.subtreeBytes / bytesPerPoint(tiles.layout, colours_)),
+          mostSamples_(options.subtreeBytes / bytesPerPoint(sampleLayout_, colours_)) {
         for (BuiltSubtree& built : journal.takeBuilt())
             earlier_.emplace(std::make_pair(built.tier, built.key), std::move(built));
     }
@@ -83,7 +94,8 @@ class Builder {
                 built[i] = std::move(found->second);
                 report(built[i].points);
             }
-            nodes.push_back({work[i].key, work[i].points * bytesPerPoint(tiles_.layout) + encodeBytes, done});
+            nodes.push_back(
+                {work[i].key, work[i].points * bytesPerPoint(layoutOf(tier), colours_) + encodeBytes, done});
         }
         auto before = predecessors(nodes);
         // Alone, an item has all threads to itself; else each has one.
@@ -130,10 +142,18 @@ class Builder {
             std::erase_if(built.borders, [&](const auto& entry) { return entry.first.level > deepest; });
     }
 
-    Status loadRows(const Item& item, bool keep, std::uint8_t* to) {
-        const std::size_t rowBytes = tiles_.layout.rowBytes();
+    // Of the rows of a tier's subtrees: above the first they have sums of colours.
+    const RowLayout& layoutOf(int tier) const { return tier == 0 ? tiles_.layout : sampleLayout_; }
+
+    Status loadRows(const RowLayout& layout, const Item& item, bool keep, std::uint8_t* to) {
+        const std::size_t rowBytes = layout.rowBytes(), inCell = tiles_.layout.rowBytes();
         auto copy = [&](const std::uint8_t* rows, std::size_t count) -> Status {
-            std::memcpy(to, rows, count * rowBytes);
+            if (rowBytes == inCell)
+                std::memcpy(to, rows, count * rowBytes);
+            for (std::size_t i = 0; i < count && rowBytes != inCell; ++i) {
+                std::memcpy(to + i * rowBytes, rows + i * inCell, inCell);
+                std::memset(to + i * rowBytes + inCell, 0, rowBytes - inCell);
+            }
             to += count * rowBytes;
             return {};
         };
@@ -158,14 +178,14 @@ class Builder {
     }
 
     // With `keep` the rows stay in their cells too.
-    Result<Subtree> load(const Item& item, bool keep, SubtreeBuffers& buffers) {
+    Result<Subtree> load(const RowLayout& layout, const Item& item, bool keep, SubtreeBuffers& buffers) {
         if (item.points > UINT32_MAX)
             return Error{ErrorCode::limitExceeded,
                          cat(item.points, " points lie at one position, but a node holds at most 2^32 - 1"),
                          "", "thin the input"};
         std::size_t count = static_cast<std::size_t>(item.points);
-        STIPPLE_CHECK(loadRows(item, keep, buffers.rows(count, tiles_.layout.rowBytes())));
-        return Subtree(tiles_.layout, tiles_.grid.cube, item.key, buffers, partsOf(item));
+        STIPPLE_CHECK(loadRows(layout, item, keep, buffers.rows(count, layout.rowBytes())));
+        return Subtree(layout, tiles_.grid.cube, item.key, buffers, partsOf(item));
     }
 
     using Buffers = std::unique_ptr<SubtreeBuffers>;
@@ -187,25 +207,26 @@ class Builder {
     Status buildOne(int tier, const Item& item, std::span<const Borders* const> borders, int threads,
                     BuiltSubtree& built) {
         Buffers buffers = takeBuffers();
-        STIPPLE_TRY(subtree, load(item, false, *buffers));
+        STIPPLE_TRY(subtree, load(layoutOf(tier), item, false, *buffers));
         if (item.leaves.empty())
             subtree.splitByCount(leafCapacity);
         else
             subtree.splitTo(item.leaves);
-        STIPPLE_TRY(sampled, sample(metadata_.sampling, subtree, spacing_, borders, threads, options_.stop));
+        STIPPLE_TRY(sampled,
+                    sample(metadata_.sampling, subtree, spacing_, colours_, borders, threads, options_.stop));
         built.tier = tier;
         built.key = item.key;
         built.borders = std::move(sampled.borders);
         STIPPLE_CHECK(pack(subtree, sampled, threads, built));
         if (item.key.level > 0)
-            STIPPLE_CHECK(storeSample(subtree, sampled.kept[0], built));
+            STIPPLE_CHECK(storeSample(subtree, sampled.kept[0], sampled.rootSums, built));
         giveBack(std::move(buffers));
         std::lock_guard lock(mutex_);
         STIPPLE_CHECK(journal_.add(built));
         for (const CellRef& cell : item.cells)
             cell.store->forget(cell.cell);
         for (const Item::Sample& part : item.samples)
-            blocks_.discard(part.offset, part.points * tiles_.layout.rowBytes());
+            blocks_.discard(part.offset, part.points * sampleLayout_.rowBytes());
         return {};
     }
 
@@ -226,7 +247,10 @@ class Builder {
             subtree.layout().gather(subtree.rows(), sampled.kept[i], batch);
             packed[i].hash.add(metadata_.schema, batch);
             packed[i].statistics = statisticsOf(metadata_.schema, batch);
-            STIPPLE_TRY(encoded, encodeNode(metadata_, nodes[i].key, batch));
+            std::span<const std::uint16_t> shown;
+            if (!sampled.shown.empty())
+                shown = sampled.shown[i];
+            STIPPLE_TRY(encoded, encodeNode(metadata_, nodes[i].key, batch, shown));
             STIPPLE_TRY(stored, storeNode(encoded, blocks_));
             packed[i].node = std::move(stored);
             report(batch.size());
@@ -245,11 +269,15 @@ class Builder {
         return {};
     }
 
-    Status storeSample(const Subtree& subtree, const std::vector<std::uint32_t>& ranks, BuiltSubtree& built) {
-        const std::size_t rowBytes = subtree.layout().rowBytes();
+    Status storeSample(const Subtree& subtree, const std::vector<std::uint32_t>& ranks,
+                       const std::vector<ColourSum>& sums, BuiltSubtree& built) {
+        const std::size_t rowBytes = sampleLayout_.rowBytes(), pointBytes = tiles_.layout.rowBytes();
         Bytes rows(ranks.size() * rowBytes);
-        for (std::size_t i = 0; i < ranks.size(); ++i)
-            std::memcpy(rows.data() + i * rowBytes, subtree.row(ranks[i]), rowBytes);
+        for (std::size_t i = 0; i < ranks.size(); ++i) {
+            std::memcpy(rows.data() + i * rowBytes, subtree.row(ranks[i]), pointBytes);
+            if (!sums.empty())
+                colours_.writeSum(sums[i], rows.data() + i * rowBytes + pointBytes);
+        }
         built.samplePoints = ranks.size();
         built.sampleOffset = blocks_.reserve(rows.size());
         return blocks_.write(built.sampleOffset, rows);
@@ -304,7 +332,7 @@ class Builder {
         NodeKey best = key;
         for (NodeKey at = key; at.level > 0;) {
             at = at.parent();
-            if (points.at(at) <= mostPoints_) {
+            if (points.at(at) <= mostSamples_) {
                 best = at;
             } else {
                 bool allReady = best == key && at == key.parent();
@@ -334,7 +362,8 @@ class Builder {
         auto examine = [&](std::size_t i, int) -> Status {
             const PlannedSubtree& from = *large[(2 * i + 1) * large.size() / (2 * chosen)];
             Buffers buffers = takeBuffers();
-            STIPPLE_TRY(subtree, load({from.key, from.points, from.cells, {}, {}}, true, *buffers));
+            STIPPLE_TRY(subtree,
+                        load(tiles_.layout, {from.key, from.points, from.cells, {}, {}}, true, *buffers));
             subtree.splitByCount(leafCapacity);
             parts[i].add(subtree);
             giveBack(std::move(buffers));
@@ -377,7 +406,10 @@ class Builder {
     ScratchFile& blocks_;
     Journal& journal_;
     const ConvertProgress& progress_;
-    const std::uint64_t mostPoints_;
+    const ColourRows colours_; // that inner nodes show the means of
+    const RowLayout sampleLayout_;
+    // Of a subtree in the first tier, and of one made of samples.
+    const std::uint64_t mostPoints_, mostSamples_;
     Spacing spacing_;
     std::map<std::pair<int, NodeKey>, BuiltSubtree> earlier_; // of an earlier run
     std::vector<BuiltSubtree> built_;                         // tier by tier, in the order of the keys

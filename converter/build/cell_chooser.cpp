@@ -52,21 +52,22 @@ void CellTable::begin(std::size_t mostCells) {
     entries_.clear();
 }
 
-std::pair<CellTable::Entry&, bool> CellTable::find(std::uint64_t cell) {
+std::pair<std::uint32_t, bool> CellTable::find(std::uint64_t cell) {
     std::uint64_t mask = slots_.size() - 1;
     std::uint64_t at = cell * 0x9E3779B97F4A7C15ull;
     for (at = (at ^ (at >> 32)) & mask; slots_[at] != 0; at = (at + 1) & mask)
-        if (Entry& entry = entries_[slots_[at] - 1]; entry.cell == cell)
+        if (std::uint32_t entry = slots_[at] - 1; entries_[entry].cell == cell)
             return {entry, false};
     entries_.push_back({cell, 0, 0});
     slots_[at] = static_cast<std::uint32_t>(entries_.size());
-    return {entries_.back(), true};
+    return {slots_[at] - 1, true};
 }
 
 CellChooser::CellChooser(const Subtree& subtree, const Spacing& spacing, int workers)
     : subtree_(subtree), spacing_(spacing), tables_(static_cast<std::size_t>(workers)) {}
 
-const std::vector<CellTable::Entry>& CellChooser::nearestToCentres(const Candidates& candidates, int worker) {
+const std::vector<CellTable::Entry>& CellChooser::nearestToCentres(const Candidates& candidates, int worker,
+                                                                   std::span<std::uint32_t> entries) {
     SampleGrid grid(spacing_, subtree_.cube().nodeBits(key(candidates).level));
     CellTable& table = tables_[static_cast<std::size_t>(worker)];
     table.begin(candidates.ranks.size());
@@ -74,7 +75,9 @@ const std::vector<CellTable::Entry>& CellChooser::nearestToCentres(const Candida
         Vec3<std::uint32_t> p = candidates.positions[i];
         Vec3i cell = grid.cellOf(p);
         double squared = grid.squaredToCentre(p, cell);
-        auto [entry, isNew] = table.find(grid.indexOf(cell));
+        auto [index, isNew] = table.find(grid.indexOf(cell));
+        entries[i] = index;
+        CellTable::Entry& entry = table[index];
         if (isNew || squared < entry.squared) {
             entry.point = i;
             entry.squared = squared;
@@ -83,13 +86,16 @@ const std::vector<CellTable::Entry>& CellChooser::nearestToCentres(const Candida
     return table.entries();
 }
 
-void GridChooser::choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) {
-    for (const CellTable::Entry& entry : nearestToCentres(candidates, worker))
-        taken[entry.point] = 1;
+void GridChooser::choose(const Candidates& candidates, int worker, std::span<std::uint32_t> representatives) {
+    const std::vector<CellTable::Entry>& entries = nearestToCentres(candidates, worker, representatives);
+    for (std::uint32_t& representative : representatives)
+        representative = entries[representative].point;
 }
 
-void RandomChooser::choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) {
-    std::size_t count = nearestToCentres(candidates, worker).size();
+void RandomChooser::choose(const Candidates& candidates, int worker,
+                           std::span<std::uint32_t> representatives) {
+    std::size_t count = nearestToCentres(candidates, worker, representatives).size();
+    std::fill(representatives.begin(), representatives.end(), nobody);
     if (count == 0)
         return;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> order(candidates.ranks.size());
@@ -97,7 +103,7 @@ void RandomChooser::choose(const Candidates& candidates, int worker, std::span<s
         order[i] = {hashOf(candidates.ranks[i], key(candidates).level), i};
     std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count - 1), order.end());
     for (std::size_t i = 0; i < count; ++i)
-        taken[order[i].second] = 1;
+        representatives[order[i].second] = order[i].second;
 }
 
 // Of the grid integers, then the attributes' bytes; the level decides the seeds of both.

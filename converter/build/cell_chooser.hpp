@@ -35,8 +35,9 @@ class CellTable {
         double squared;
     };
     void begin(std::size_t mostCells);
-    // The cell's entry, and whether it is new (`point` and `squared` are then to be set).
-    std::pair<Entry&, bool> find(std::uint64_t cell);
+    // The index of the cell's entry, and whether it is new (`point` and `squared` are then to be set).
+    std::pair<std::uint32_t, bool> find(std::uint64_t cell);
+    Entry& operator[](std::uint32_t index) { return entries_[index]; }
     const std::vector<Entry>& entries() const { return entries_; }
 
   private:
@@ -55,8 +56,9 @@ class CellChooser : public Chooser {
   protected:
     const NodeKey& key(const Candidates& candidates) const { return subtree_.nodes()[candidates.node].key; }
     // For each cell that holds candidates the one nearest to its centre, the first in Morton order if several
-    // are.
-    const std::vector<CellTable::Entry>& nearestToCentres(const Candidates& candidates, int worker);
+    // are. Sets for each candidate which entry its cell has.
+    const std::vector<CellTable::Entry>& nearestToCentres(const Candidates& candidates, int worker,
+                                                          std::span<std::uint32_t> entries);
 
     const Subtree& subtree_;
 
@@ -68,14 +70,14 @@ class CellChooser : public Chooser {
 class GridChooser : public CellChooser {
   public:
     using CellChooser::CellChooser;
-    void choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) override;
+    void choose(const Candidates& candidates, int worker, std::span<std::uint32_t> representatives) override;
 };
 
 // Points have a hash for each level, so that what is chosen on one says nothing of the next.
 class RandomChooser : public CellChooser {
   public:
     using CellChooser::CellChooser;
-    void choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) override;
+    void choose(const Candidates& candidates, int worker, std::span<std::uint32_t> representatives) override;
 
   private:
     std::uint64_t hashOf(std::uint32_t rank, int level) const;

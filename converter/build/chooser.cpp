@@ -6,7 +6,8 @@
 namespace stipple {
 
 std::unique_ptr<Chooser> makeChooser(Sampling sampling, const Subtree& subtree, const Spacing& spacing,
-                                     std::span<const Borders* const> neighbours, int workers) {
+                                     std::span<const Borders* const> neighbours, int workers,
+                                     bool wantsRepresentatives) {
     switch (sampling) {
     case Sampling::random:
         return std::make_unique<RandomChooser>(subtree, spacing, workers);
@@ -15,7 +16,7 @@ std::unique_ptr<Chooser> makeChooser(Sampling sampling, const Subtree& subtree, 
     case Sampling::poisson:
         break;
     }
-    return std::make_unique<DiskChooser>(subtree, spacing, neighbours, workers);
+    return std::make_unique<DiskChooser>(subtree, spacing, neighbours, workers, wantsRepresentatives);
 }
 
 } // namespace stipple

@@ -83,6 +83,10 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& 
     metadata.pointCount = tiles.sums.points;
     metadata.schema = scan.schema;
     metadata.pictureColour = pictureColour(tiles.sums.colour, scan.schema);
+    // Means of intensities bring pictures 2 to 4 % nearer to the truth, but make them larger.
+    const bool isRgb = metadata.pictureColour == PictureColour::rgb;
+    if (metadata.pictureColour != PictureColour::none)
+        metadata.innerColour = options.innerColour.value_or(isRgb ? InnerColour::mean : InnerColour::exact);
     auto fits8Bit = [](std::uint16_t max) { return max <= 255; };
     metadata.colourIs8Bit =
         metadata.pictureColour == PictureColour::rgb &&
@@ -101,10 +105,12 @@ CloudMetadata describe(const Scan& scan, const Tiles& tiles, const std::string& 
 
 // What decides the bytes of the output: a checkpoint goes on only if all of it is the same.
 std::string identityOf(const Scan& scan, const std::string& output, const ConvertOptions& options) {
-    std::string text =
-        cat("stipple " STIPPLE_VERSION "\noutput ", fs::absolute(output).string(), "\nname ", options.name,
-            "\ncrs ", options.crs, "\ncolumns ", options.input.columns, "\nscale ", options.input.scale,
-            "\nsampling ", static_cast<int>(options.sampling), "\n");
+    std::string text = cat(
+        "stipple " STIPPLE_VERSION "\noutput ", fs::absolute(output).string(), "\nname ", options.name,
+        "\ncrs ", options.crs, "\ncolumns ", options.input.columns, "\nscale ", options.input.scale,
+        "\nsampling ", static_cast<int>(options.sampling), "\ncolours ",
+        options.innerColour ? innerColourNames[static_cast<std::size_t>(*options.innerColour)] : "default",
+        "\n");
     std::vector<std::string> inputs;
     for (const ScannedInput& input : scan.inputs) {
         const std::string& path = input.description().path;

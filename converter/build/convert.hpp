@@ -18,6 +18,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,9 @@ struct ConvertOptions {
     std::string crs = {};  // of the cloud, "EPSG:n" (ScanOptions::crs); empty: what the inputs state
     InputOptions input = {};
     Sampling sampling = Sampling::poisson; // how points of coarse nodes are chosen
-    int threads = 0;                       // 0: one for each core
+    // What coarse nodes show, if the cloud has a colour. Nothing: mean RGB, exact intensities.
+    std::optional<InnerColour> innerColour = {};
+    int threads = 0; // 0: one for each core
     // For points, at least leastMemoryBytes (memory_share.hpp); the process has up to 200 MB besides. 0: a
     // quarter of the machine's.
     std::uint64_t memoryBytes = 0;

@@ -57,10 +57,13 @@ class FaceZone {
 };
 } // namespace
 
+static_assert(DiskThinning::outside == nobody);
+
 DiskChooser::DiskChooser(const Subtree& subtree, const Spacing& spacing,
-                         std::span<const Borders* const> neighbours, int workers)
+                         std::span<const Borders* const> neighbours, int workers, bool wantsRepresentatives)
     : subtree_(subtree), spacing_(spacing), neighbours_(neighbours),
-      thinnings_(static_cast<std::size_t>(workers)), borders_(subtree.nodes().size()) {
+      thinnings_(static_cast<std::size_t>(workers)), wantsRepresentatives_(wantsRepresentatives),
+      borders_(subtree.nodes().size()) {
     for (std::size_t i = 0; i < subtree.nodes().size(); ++i)
         indexOf_.emplace(subtree.nodes()[i].key, i);
 }
@@ -69,7 +72,7 @@ int DiskChooser::nodeBits(std::size_t node) const {
     return subtree_.cube().nodeBits(subtree_.nodes()[node].key.level);
 }
 
-void DiskChooser::choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) {
+void DiskChooser::choose(const Candidates& candidates, int worker, std::span<std::uint32_t> representatives) {
     DiskThinning& thinning = thinnings_[static_cast<std::size_t>(worker)];
     int bits = nodeBits(candidates.node);
     thinning.begin(bits, spacing_.metric.weights, spacing_.squaredSteps(bits), candidates.positions);
@@ -77,17 +80,20 @@ void DiskChooser::choose(const Candidates& candidates, int worker, std::span<std
     const FaceZone border(spacing_, bits, bits);
     std::vector<Vec3i>& borders = borders_[candidates.node];
     auto count = static_cast<std::uint32_t>(candidates.ranks.size());
+    std::fill(representatives.begin(), representatives.end(), nobody);
     for (std::uint32_t block = 0; block < count; block += visitBlock)
         for (std::uint32_t inBlock : visitOrder) {
             std::uint32_t at = block + inBlock;
             if (at >= count || !thinning.isFree(at))
                 continue;
-            taken[at] = 1;
             Vec3i p{candidates.positions[at].x, candidates.positions[at].y, candidates.positions[at].z};
-            thinning.exclude(p);
+            representatives[at] = at;
+            thinning.exclude(p, wantsRepresentatives_ ? at : nobody);
             if (border.holds(p)) // a neighbour has to know of it
                 borders.push_back(subtree_.position(candidates.ranks[at]));
         }
+    for (std::uint32_t i = 0; i < count && wantsRepresentatives_; ++i)
+        representatives[i] = thinning.excludedBy(i);
 }
 
 void DiskChooser::blockNeighbours(const NodeKey& node, DiskThinning& thinning) const {
@@ -114,7 +120,7 @@ void DiskChooser::block(const std::vector<Vec3i>& borders, Vec3i corner, int bit
     double squaredDistance = spacing_.squaredSteps(bits);
     for (Vec3i border : borders)
         if (reaches(border - corner, std::int64_t{1} << bits, squaredDistance))
-            thinning.exclude(border - corner);
+            thinning.exclude(border - corner, nobody);
 }
 
 // Whether `p`, in steps from the node's corner, is within the minimum distance of the node's box on the

@@ -11,10 +11,10 @@ namespace stipple {
 class DiskChooser : public Chooser {
   public:
     DiskChooser(const Subtree& subtree, const Spacing& spacing, std::span<const Borders* const> neighbours,
-                int workers);
+                int workers, bool wantsRepresentatives);
 
     bool heedsNeighbours() const override { return true; }
-    void choose(const Candidates& candidates, int worker, std::span<std::uint8_t> taken) override;
+    void choose(const Candidates& candidates, int worker, std::span<std::uint32_t> representatives) override;
     void finishLevel(std::size_t begin, std::size_t end) override;
     Borders takeBorders() override { return std::move(outer_); }
 
@@ -28,6 +28,7 @@ class DiskChooser : public Chooser {
     const Spacing& spacing_;
     std::span<const Borders* const> neighbours_;
     std::vector<DiskThinning> thinnings_; // one for each worker
+    const bool wantsRepresentatives_;
     std::unordered_map<NodeKey, std::size_t, NodeKeyHash> indexOf_;
     std::vector<std::vector<Vec3i>> borders_; // by node: taken points near its faces; of the level at work
     Borders outer_;

@@ -54,6 +54,7 @@ void DiskThinning::place() {
     if (heads_.size() < cells)
         heads_.resize(cells, 0);
     fours_.resize(points_.size() / 4 + 1);
+    nearest_.assign(fours_.size(), Floats{} + near_);
     constexpr float nowhere = std::numeric_limits<float>::infinity();
     fours_.back().x = Floats{nowhere, nowhere, nowhere, nowhere};
     std::size_t last = cells;
@@ -83,12 +84,16 @@ Vec3<float> DiskThinning::weighted(Vec3d p) const {
             static_cast<float>(p.z * weights_.z)};
 }
 
-void DiskThinning::exclude(Vec3i p) {
+void DiskThinning::exclude(Vec3i p, std::uint32_t by) {
     const Vec3<float> rounded = weighted(inDouble(p));
+    const auto mark = static_cast<std::int32_t>(by + markOffset);
     Flags doubt{};
-    visitRunsNear(p, [&](const Run& run) { doubt |= excludeRun(run, rounded); });
+    if (by == outside)
+        visitRunsNear(p, [&](const Run& run) { doubt |= excludeRun<true>(run, rounded, mark); });
+    else
+        visitRunsNear(p, [&](const Run& run) { doubt |= excludeRun<false>(run, rounded, mark); });
     if ((doubt[0] | doubt[1] | doubt[2] | doubt[3]) != 0)
-        visitRunsNear(p, [&](const Run& run) { excludeExactly(run, inDouble(p)); });
+        visitRunsNear(p, [&](const Run& run) { excludeExactly(run, inDouble(p), mark); });
 }
 
 // All runs with points within reach.
@@ -110,25 +115,34 @@ void DiskThinning::visitRunsNear(Vec3i p, Visit visit) const {
 
 // Returns for which points floats leave a doubt. Compares points beside the run, too, that share its first or
 // last four.
-DiskThinning::Flags DiskThinning::excludeRun(const Run& run, Vec3<float> p) {
+template <bool isOutside>
+DiskThinning::Flags DiskThinning::excludeRun(const Run& run, Vec3<float> p, std::int32_t mark) {
     const float nearest = near_, farthest = far_;
     Flags doubt{};
     for (Four *four = &fours_[run.begin / 4], *end = &fours_[(run.end - 1) / 4] + 1; four < end; ++four) {
         Floats x = four->x - p.x, y = four->y - p.y, z = four->z - p.z;
         Floats squared = x * x + y * y + z * z;
-        Flags near = squared < nearest;
-        four->excluded |= near;
-        doubt |= near ^ (squared <= farthest);
+        doubt |= (squared >= nearest) & (squared <= farthest);
+        if constexpr (isOutside) {
+            Flags first = (squared < nearest) & (four->excluded == 0);
+            four->excluded |= first & mark;
+        } else {
+            Floats& least = nearest_[static_cast<std::size_t>(four - fours_.data())];
+            Flags nearer = squared < least;
+            four->excluded = nearer ? Flags{} + mark : four->excluded;
+            least = nearer ? squared : least;
+        }
     }
     return doubt;
 }
 
-void DiskThinning::excludeExactly(const Run& run, Vec3d p) {
+void DiskThinning::excludeExactly(const Run& run, Vec3d p, std::int32_t mark) {
     for (std::uint32_t i = run.begin; i < run.end; ++i) {
         double x = (points_[i].x - p.x) * weights_.x, y = (points_[i].y - p.y) * weights_.y,
                z = (points_[i].z - p.z) * weights_.z;
         if (x * x + y * y + z * z < squaredDistance_)
-            fours_[i / 4].excluded[i % 4] = -1;
+            if (std::int32_t by = fours_[i / 4].excluded[i % 4]; by == 0 || by == outsideMark)
+                fours_[i / 4].excluded[i % 4] = mark;
     }
 }
 

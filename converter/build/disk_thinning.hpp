@@ -18,23 +18,33 @@ namespace stipple {
 
 class DiskThinning {
   public:
+    static constexpr std::uint32_t outside = ~std::uint32_t{0};
+
     // Starts a node of 2^nodeBits steps (at most 2^31). Points are in steps from its lowest corner and
-    // stay the caller's until the next node; fewer than 2^32. Weights: see DistanceMetric.
+    // stay the caller's until the next node; fewer than 2^32 - 2. Weights: see DistanceMetric.
     void begin(int nodeBits, Vec3d weights, double squaredDistance,
                std::span<const Vec3<std::uint32_t>> points);
 
     bool isFree(std::size_t index) const { return fours_[index / 4].excluded[index % 4] == 0; }
     // Excludes the points that are too near to `p`, which may lie up to the minimum distance outside the
-    // node.
-    void exclude(Vec3i p);
+    // node. `by`: its index, or `outside`, which takes less time (if the caller doesn't ask who excluded
+    // them).
+    void exclude(Vec3i p, std::uint32_t by);
+    // Of a point that is not free the nearest of those that excluded it; one outside only if no other did.
+    // Where floats hardly tell, one of the two nearest.
+    std::uint32_t excludedBy(std::size_t index) const {
+        return static_cast<std::uint32_t>(fours_[index / 4].excluded[index % 4]) - markOffset;
+    }
 
   private:
+    static constexpr std::uint32_t markOffset = 2;
+    static constexpr std::int32_t outsideMark = 1; // outside + markOffset
     using Floats = float __attribute__((vector_size(16)));
     using Flags = std::int32_t __attribute__((vector_size(16)));
     // Four points that follow one another: a line of the cache.
     struct alignas(64) Four {
         Floats x, y, z; // weighted
-        Flags excluded; // 0 or -1
+        Flags excluded; // by whom, plus markOffset; 0: free
     };
     // Points that follow one another and lie in one cell.
     struct Run {
@@ -54,8 +64,9 @@ class DiskThinning {
     Vec3<float> weighted(Vec3d p) const;
     template <class Visit>
     void visitRunsNear(Vec3i p, Visit visit) const;
-    Flags excludeRun(const Run& run, Vec3<float> p);
-    void excludeExactly(const Run& run, Vec3d p);
+    template <bool isOutside>
+    Flags excludeRun(const Run& run, Vec3<float> p, std::int32_t mark);
+    void excludeExactly(const Run& run, Vec3d p, std::int32_t mark);
 
     Vec3d weights_;
     double squaredDistance_ = 0;
@@ -64,6 +75,8 @@ class DiskThinning {
     std::array<Axis, 3> axes_;
     std::span<const Vec3<std::uint32_t>> points_;
     std::vector<Four> fours_;
+    // Parallel to them: squared distances of those that excluded; near_ if nobody in the node did.
+    std::vector<Floats> nearest_;
     std::vector<Run> runs_;
     std::vector<std::uint32_t> heads_; // of each cell: 1 more than the number of its last run, or 0
     std::vector<std::size_t> used_;    // the cell of each run

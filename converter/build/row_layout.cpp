@@ -47,6 +47,13 @@ RowLayout::RowLayout(const Schema& schema, const BoxI& bounds) : schema_(schema)
     }
 }
 
+RowLayout RowLayout::withExtra(std::size_t bytes) const {
+    RowLayout other = *this;
+    other.rowBytes_ += bytes;
+    other.extraBytes_ += bytes;
+    return other;
+}
+
 void RowLayout::pack(const PointBatch& batch, std::span<const std::uint32_t> indices,
                      std::uint8_t* rows) const {
     for (std::size_t first = 0; first < indices.size(); first += blockPoints) {

@@ -11,13 +11,13 @@ namespace {
 // What one thread works with.
 struct Worker {
     Candidates candidates;
-    std::vector<std::uint8_t> taken; // parallel to the candidates
+    std::vector<std::uint32_t> representatives; // parallel to the candidates
 };
 
 class Sampler {
   public:
-    Sampler(const Subtree& subtree, Chooser& chooser, int threads)
-        : subtree_(subtree), nodes_(subtree.nodes()), chooser_(chooser),
+    Sampler(const Subtree& subtree, Chooser& chooser, MeanColours* means, int threads)
+        : subtree_(subtree), nodes_(subtree.nodes()), chooser_(chooser), means_(means),
           workers_(static_cast<std::size_t>(threads)), samples_(nodes_.size()) {}
 
     Result<Sampled> run(const std::atomic<bool>* stop) {
@@ -32,7 +32,12 @@ class Sampler {
         }
         if (!nodes_.empty() && nodes_[0].isLeaf)
             samples_[0] = everyPoint(nodes_[0]);
-        return Sampled{std::move(samples_), chooser_.takeBorders()};
+        Sampled sampled{std::move(samples_), {}, {}, chooser_.takeBorders()};
+        if (means_ != nullptr) {
+            sampled.shown = means_->takeShown();
+            sampled.rootSums = means_->takeRootSums();
+        }
+        return sampled;
     }
 
   private:
@@ -66,13 +71,18 @@ class Sampler {
             if (child >= 0 && nodes_[below].isLeaf)
                 samples_[below] = everyPoint(nodes_[below]);
         }
-        if (subtree_.cube().nodeBits(node.key.level) > maxNodeBits)
+        if (subtree_.cube().nodeBits(node.key.level) > maxNodeBits) {
+            if (means_ != nullptr)
+                means_->keepBelow(index);
             return; // too wide to hold points: the children keep theirs
-        auto& [candidates, taken] = workers_[static_cast<std::size_t>(worker)];
+        }
+        auto& [candidates, representatives] = workers_[static_cast<std::size_t>(worker)];
         gather(index, candidates);
-        taken.assign(candidates.ranks.size(), 0);
-        chooser_.choose(candidates, worker, taken);
-        shareOut(index, taken);
+        representatives.resize(candidates.ranks.size());
+        chooser_.choose(candidates, worker, representatives);
+        if (means_ != nullptr)
+            means_->handOn(index, candidates, representatives);
+        shareOut(index, representatives);
     }
 
     void gather(std::size_t index, Candidates& candidates) const {
@@ -92,21 +102,25 @@ class Sampler {
         }
     }
 
-    // Moves what was taken from the children's samples to the node's.
-    void shareOut(std::size_t index, const std::vector<std::uint8_t>& taken) {
+    // Moves what was chosen from the children's samples to the node's.
+    void shareOut(std::size_t index, const std::vector<std::uint32_t>& representatives) {
         std::vector<std::uint32_t>& sample = samples_[index];
-        sample.reserve(static_cast<std::size_t>(std::count(taken.begin(), taken.end(), 1)));
-        std::size_t at = 0;
+        std::size_t chosen = 0;
+        for (std::uint32_t i = 0; i < representatives.size(); ++i)
+            chosen += representatives[i] == i ? 1 : 0;
+        sample.reserve(chosen);
+        std::uint32_t at = 0;
         for (std::int32_t child : nodes_[index].children) {
             if (child < 0)
                 continue;
             std::vector<std::uint32_t>& below = samples_[static_cast<std::size_t>(child)];
             std::size_t kept = 0;
             for (std::uint32_t rank : below) {
-                if (taken[at++] != 0)
+                if (representatives[at] == at)
                     sample.push_back(rank);
                 else
                     below[kept++] = rank;
+                ++at;
             }
             below.resize(kept);
             below.shrink_to_fit();
@@ -116,6 +130,7 @@ class Sampler {
     const Subtree& subtree_;
     const std::vector<SubtreeNode>& nodes_;
     Chooser& chooser_;
+    MeanColours* means_; // null: nothing to average
     std::vector<Worker> workers_;
     // Parallel to the nodes: the sample until the parent has chosen, then what is kept.
     std::vector<std::vector<std::uint32_t>> samples_;
@@ -123,10 +138,12 @@ class Sampler {
 } // namespace
 
 Result<Sampled> sample(Sampling sampling, const Subtree& subtree, const Spacing& spacing,
-                       std::span<const Borders* const> neighbours, int threads,
+                       const ColourRows& colours, std::span<const Borders* const> neighbours, int threads,
                        const std::atomic<bool>* stop) {
-    auto chooser = makeChooser(sampling, subtree, spacing, neighbours, threads);
-    return Sampler(subtree, *chooser, threads).run(stop);
+    const bool isMean = colours.channels() > 0;
+    auto chooser = makeChooser(sampling, subtree, spacing, neighbours, threads, isMean);
+    MeanColours means(subtree, colours, spacing);
+    return Sampler(subtree, *chooser, isMean ? &means : nullptr, threads).run(stop);
 }
 
 } // namespace stipple

@@ -10,7 +10,7 @@
 // heeds neighbouring subtrees that were sampled before it in the same way.
 #pragma once
 
-#include "converter/build/chooser.hpp"
+#include "converter/build/mean_colour.hpp"
 #include "shared/base/result.hpp"
 
 #include <atomic>
@@ -21,12 +21,17 @@ struct Sampled {
     // Parallel to Subtree::nodes(): what each keeps, as ranks, rising. May be empty. The first is the sample
     // of the subtree's root, which the nodes above may take from.
     std::vector<std::vector<std::uint32_t>> kept;
+    // What these points show (mean_colour.hpp), and the sums of the sample of the subtree's root; empty if
+    // there is nothing to average.
+    std::vector<std::vector<std::uint16_t>> shown;
+    std::vector<ColourSum> rootSums;
     Borders borders;
 };
 
-// `neighbours`: of the touching subtrees that were sampled before.
+// `colours`: to average; may have no channels. `neighbours`: of the touching subtrees that were sampled
+// before.
 Result<Sampled> sample(Sampling sampling, const Subtree& subtree, const Spacing& spacing,
-                       std::span<const Borders* const> neighbours, int threads,
+                       const ColourRows& colours, std::span<const Borders* const> neighbours, int threads,
                        const std::atomic<bool>* stop);
 
 } // namespace stipple

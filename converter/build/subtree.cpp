@@ -127,8 +127,8 @@ class RowSorter {
         if (lowBits_ > 0)
             if (int order = compareMorton(relative(a), relative(b)); order != 0)
                 return order < 0;
-        return std::memcmp(layout_.attributes(row(a)), layout_.attributes(row(b)), layout_.attributeBytes()) <
-               0;
+        return std::memcmp(layout_.attributes(row(a)), layout_.attributes(row(b)),
+                           layout_.attributeBytes() + layout_.extraBytes()) < 0;
     }
 
     const RowLayout& layout_;

@@ -1,7 +1,7 @@
 // The points of one node of the octree in memory, in Morton order, and the octree over them: a node's points
 // are a range. The unit in which a cloud is sampled and packed.
 //
-// Order: by Morton code of the integers in the root cube, then by the attributes' bytes. So a point's
+// Order: by Morton code of the integers in the root cube, then by the rest of the row's bytes. So a point's
 // place depends on the points alone, not on how they came in.
 #pragma once
 

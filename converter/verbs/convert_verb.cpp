@@ -184,6 +184,15 @@ void addConvertVerb(CLI::App& program, cli::Action& action) {
             "How the points of coarse nodes are chosen: poisson (with a minimum distance; default), "
             "grid (one for each cell) or random")
         ->check(CLI::IsMember(samplings));
+    verb->add_option_function<std::string>(
+            "--colours",
+            [arguments](const std::string& name) {
+                arguments->options.innerColour =
+                    name == innerColourNames[0] ? InnerColour::exact : InnerColour::mean;
+            },
+            "What coarse nodes show of a point: the mean colour of the area that it stands for (mean; "
+            "default for RGB), or its own (exact; default for intensity), which is kept in any case")
+        ->check(CLI::IsMember({innerColourNames[0], innerColourNames[1]}));
     verb->add_flag(
         "--strict", arguments->options.strict,
         "Refuse inputs with points that can't be kept (no number, out of range, marked invalid) or "

@@ -140,11 +140,17 @@ ColourWidth narrowestWidth(std::span<const std::uint16_t> values) {
 }
 
 void roundTo(ColourWidth width, std::span<std::uint16_t> values) {
-    if (width == ColourWidth::wide)
-        return;
-    std::uint32_t unit = unitOf(width);
-    for (std::uint16_t& value : values)
-        value = static_cast<std::uint16_t>(std::min<std::uint32_t>((value + unit / 2) / unit, 255) * unit);
+    auto round = [&]<std::uint32_t unit>(std::integral_constant<std::uint32_t, unit>) {
+        for (std::uint16_t& value : values)
+            value =
+                static_cast<std::uint16_t>(std::min<std::uint32_t>((value + unit / 2) / unit, 255) * unit);
+    };
+    if (width == ColourWidth::low)
+        round(std::integral_constant<std::uint32_t, 1>{});
+    else if (width == ColourWidth::high)
+        round(std::integral_constant<std::uint32_t, 256>{});
+    else if (width == ColourWidth::repeated)
+        round(std::integral_constant<std::uint32_t, 257>{});
 }
 
 // [u8 width, in stratum 0] [u8 coding] [per channel: section of the residuals' low bytes, and one of their

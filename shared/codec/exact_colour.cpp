@@ -30,22 +30,28 @@ void subtract(std::vector<T>& from, const std::vector<T>& what) {
 template <class T>
 void encodeAs(ByteWriter& to, std::span<const std::uint16_t> exact, std::span<const std::uint16_t> shown,
               std::size_t channels, int shift) {
-    ByteWriter residual, plain;
-    residual.write(Coding::residual);
-    plain.write(Coding::plain);
+    ByteWriter best;
+    best.write(Coding::residual);
     std::vector<T> green;
     for (std::size_t c = 0; c < channels; ++c) {
         std::size_t channel = channels == 1 ? 0 : channelOrder[c];
         std::vector<T> own = channelOf<T>(exact, channels, channel, shift);
-        writePlane<T>(plain, own);
         subtract(own, channelOf<T>(shown, channels, channel, shift));
         if (c == 0)
             green = own;
         else
             subtract(own, green);
-        writePlane<T>(residual, own);
+        writePlane<T>(best, own);
     }
-    to.writeBytes(plain.size() < residual.size() ? plain.bytes() : residual.bytes());
+    if (2 * best.size() > exact.size()) { // over four bits a value: the colours themselves may be simpler
+        ByteWriter plain;
+        plain.write(Coding::plain);
+        for (std::size_t c = 0; c < channels; ++c)
+            writePlane<T>(plain, channelOf<T>(exact, channels, channels == 1 ? 0 : channelOrder[c], shift));
+        if (plain.size() < best.size())
+            best = std::move(plain);
+    }
+    to.writeBytes(best.bytes());
 }
 
 template <class T>
@@ -72,7 +78,7 @@ Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::siz
         std::size_t channel = channels == 1 ? 0 : channelOrder[c];
         std::vector<T> own(order.size());
         STIPPLE_CHECK(readPlane(from, own));
-        for (std::size_t i = 0; i < order.size(); ++i) {
+        for (std::size_t i = 0; i * channels < colours.size(); ++i) {
             std::uint16_t& value = colours[i * channels + channel];
             T part = own[order[i]];
             if (coding == Coding::residual)
@@ -89,8 +95,7 @@ Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::siz
 
 // [u8 width] [u8 coding] [per channel: section of the low bytes, and one of the high bytes if wide]
 void writeExactColour(ByteWriter& to, std::span<const std::uint16_t> exact,
-                      std::span<const std::uint16_t> shown, int channels) {
-    ColourWidth width = narrowestWidth(exact);
+                      std::span<const std::uint16_t> shown, int channels, ColourWidth width) {
     to.write(width);
     auto count = static_cast<std::size_t>(channels);
     if (width == ColourWidth::wide)

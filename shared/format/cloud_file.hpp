@@ -63,8 +63,8 @@ Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry
 Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
                                             std::size_t block, ByteSpan bytes);
 
-// Replaces the colours of a node's picture, all strata of it, by the exact ones, from the bytes of the block
-// that has them (AttributeBlock::isExactColour; block 0). No bytes: the picture's are exact.
+// Replaces the colours of a node's picture, of any number of strata, by the exact ones, from the bytes of the
+// block that has them (AttributeBlock::isExactColour; block 0). No bytes: the picture's are exact.
 Status decodeExactColour(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
                          NodePicture& picture);
 

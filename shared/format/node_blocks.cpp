@@ -160,7 +160,7 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     std::size_t channels = pictureAttributes(metadata).size();
     if (blocks.empty() || !blocks[0].isExactColour || entry.attributeBytes.size() != blocks.size() ||
-        picture.size() != entry.pointCount || picture.colour.size() != channels * picture.size())
+        picture.size() > entry.pointCount || picture.colour.size() != channels * picture.size())
         return Error{
             ErrorCode::invalidArgument, "there is no block of exact colours to this picture", {}, {}};
     ByteRange range = entry.attributeRange(0);

@@ -123,27 +123,31 @@ bool repeatsOneValue(ByteSpan column, std::size_t size) {
            std::memcmp(column.data(), column.data() + size, column.size() - size) == 0;
 }
 
-// In Morton order what the picture shows, if that is not the points' own colour, in the precision of that; 8
-// bits of 16 are enough to look at.
+// Of what is shown instead of colours of width `own`: the same precision; 8 bits of 16 are enough to look at.
+ColourWidth shownWidth(ColourWidth own, std::size_t channels) {
+    return own == ColourWidth::wide && channels == 3 ? ColourWidth::repeated : own;
+}
+
+// In Morton order what the picture shows, if that is not the points' own colour.
 std::vector<std::uint16_t> sortedShown(std::span<const std::uint16_t> shown, std::size_t channels,
-                                       ColourWidth own, const SortedPoints& sorted) {
+                                       ColourWidth width, const SortedPoints& sorted) {
     std::vector<std::uint16_t> values(shown.size());
     if (shown.empty())
         return values;
     for (std::size_t i = 0; i < sorted.input.size(); ++i)
         for (std::size_t c = 0; c < channels; ++c)
             values[i * channels + c] = shown[sorted.input[i] * channels + c];
-    roundTo(own == ColourWidth::wide && channels == 3 ? ColourWidth::repeated : own, values);
+    roundTo(width, values);
     return values;
 }
 
 // No bytes if the picture shows them.
 Bytes exactColourBlock(std::span<const std::uint16_t> exact, std::span<const std::uint16_t> shown,
-                       std::size_t channels) {
+                       std::size_t channels, ColourWidth width) {
     if (shown.empty() || std::equal(exact.begin(), exact.end(), shown.begin()))
         return {};
     ByteWriter payload;
-    writeExactColour(payload, exact, shown, static_cast<int>(channels));
+    writeExactColour(payload, exact, shown, static_cast<int>(channels), width);
     return framePaddedBlock(payload.bytes());
 }
 
@@ -184,9 +188,10 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
     std::vector<int> colourAttributes = pictureAttributes(metadata);
     const std::size_t channels = colourAttributes.size();
     std::vector<std::uint16_t> exact = sortedColour(colourAttributes, points, sorted);
-    std::vector<std::uint16_t> rounded = sortedShown(shown, channels, narrowestWidth(exact), sorted);
+    const ColourWidth exactWidth = narrowestWidth(exact);
+    const ColourWidth width = shown.empty() ? exactWidth : shownWidth(exactWidth, channels);
+    std::vector<std::uint16_t> rounded = sortedShown(shown, channels, width, sorted);
     const std::vector<std::uint16_t>& colour = shown.empty() ? exact : rounded;
-    ColourWidth width = narrowestWidth(colour);
     std::size_t sizeBytes = 0;
     for (int stratum = 0; stratum < strataCount; ++stratum) {
         std::size_t count = stratumPoints(node.pointCount, stratum);
@@ -204,7 +209,7 @@ Result<EncodedNode> encodeNode(const CloudMetadata& metadata, NodeKey key, const
         sizeBytes = std::max(sizeBytes, payload.size());
     }
     for (const AttributeBlock& block : attributeBlocks(metadata)) {
-        node.attributes.push_back(block.isExactColour ? exactColourBlock(exact, rounded, channels)
+        node.attributes.push_back(block.isExactColour ? exactColourBlock(exact, rounded, channels, exactWidth)
                                                       : attributeBlock(metadata, block, points, sorted));
         sizeBytes = std::max(sizeBytes, node.attributes.back().size());
     }

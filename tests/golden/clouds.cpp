@@ -95,6 +95,19 @@ Status writeScan(const nlohmann::json& cloud, const std::string& path) {
     return Error{ErrorCode::invalidArgument, cat("there is no cloud of kind '", kind, "'"), "cloud", ""};
 }
 
+Result<ConvertOptions> optionsOf(const nlohmann::json& cloud) {
+    ConvertOptions options;
+    options.name = "golden";
+    options.threads = 1;
+    const std::string colours = cloud.value("colours", "");
+    for (std::size_t i = 0; i < innerColourNames.size(); ++i)
+        if (colours == innerColourNames[i])
+            options.innerColour = static_cast<InnerColour>(i);
+    if (!colours.empty() && !options.innerColour)
+        return Error{ErrorCode::invalidArgument, "colours must be exact or mean", "cloud", ""};
+    return options;
+}
+
 } // namespace
 
 Result<std::string> makeCloud(const nlohmann::json& cloud, const std::string& workFolder) {
@@ -105,10 +118,8 @@ Result<std::string> makeCloud(const nlohmann::json& cloud, const std::string& wo
     if (made.count(output))
         return output;
     std::filesystem::remove(output);
+    STIPPLE_TRY(options, optionsOf(cloud));
     STIPPLE_CHECK(writeScan(cloud, base + ".las"));
-    ConvertOptions options;
-    options.name = "golden";
-    options.threads = 1;
     auto converted = convertFiles({base + ".las"}, output, options,
                                   [](const std::string&, std::uint64_t, std::uint64_t) {});
     if (!converted.ok())

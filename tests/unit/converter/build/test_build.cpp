@@ -17,6 +17,7 @@ ConvertOptions pieces(std::uint64_t memoryBytes = 0, int threads = 2) {
     options.memoryBytes = memoryBytes;
     options.threads = threads;
     options.sizes = {.pointsPerRound = 50000, .subtreeBytes = smallSubtrees};
+    options.innerColour = InnerColour::mean; // of intensities: sums go from tier to tier
     return options;
 }
 

@@ -47,13 +47,15 @@ struct Node {
     }
     // Indices of the candidates chosen.
     std::vector<std::size_t> choose(Sampling sampling, const Spacing& spacing) const {
-        auto chooser = makeChooser(sampling, *subtree, spacing, {}, 1);
-        std::vector<std::uint8_t> taken(candidates.ranks.size());
-        chooser->choose(candidates, 0, taken);
+        auto chooser = makeChooser(sampling, *subtree, spacing, {}, 1, true);
+        std::vector<std::uint32_t> representatives(candidates.ranks.size());
+        chooser->choose(candidates, 0, representatives);
         std::vector<std::size_t> chosen;
-        for (std::size_t i = 0; i < taken.size(); ++i)
-            if (taken[i] != 0)
+        for (std::size_t i = 0; i < representatives.size(); ++i)
+            if (representatives[i] == i)
                 chosen.push_back(i);
+            else if (std::uint32_t other = representatives[i]; other != nobody)
+                REQUIRE(representatives.at(other) == other); // a chosen one
         return chosen;
     }
 };

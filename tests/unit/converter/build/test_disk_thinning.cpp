@@ -44,7 +44,7 @@ void compareWithSampler(DiskThinning& thinning, int nodeBits, Vec3d weights, dou
         Vec3i p = i % 2 == 0 ? Vec3i{-1 - out, along & (side - 1), along >> 32 & (side - 1)}
                              : Vec3i{along & (side - 1), along >> 32 & (side - 1), side + out};
         sampler.block(p);
-        thinning.exclude(p);
+        thinning.exclude(p, DiskThinning::outside);
     }
     std::vector<std::size_t> order(points.size());
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -55,7 +55,7 @@ void compareWithSampler(DiskThinning& thinning, int nodeBits, Vec3d weights, dou
         bool isFree = thinning.isFree(i);
         REQUIRE(sampler.accept(wide(points[i])) == isFree);
         if (isFree)
-            thinning.exclude(wide(points[i]));
+            thinning.exclude(wide(points[i]), static_cast<std::uint32_t>(i));
         taken += isFree ? 1 : 0;
     }
     CHECK(taken > 0);
@@ -107,7 +107,7 @@ TEST_CASE("points at the distance itself stay, those a step nearer go, where flo
                         {corner, corner, corner + distance - 1}};
     DiskThinning thinning;
     thinning.begin(31, {1, 1, 1}, double{distance} * distance, points);
-    thinning.exclude(wide(points[0]));
+    thinning.exclude(wide(points[0]), 0);
     for (std::size_t i = 0; i < points.size(); ++i)
         CHECK(thinning.isFree(i) == (i % 2 == 1));
 }
@@ -115,8 +115,27 @@ TEST_CASE("points at the distance itself stay, those a step nearer go, where flo
 TEST_CASE("a node without points has nothing to exclude", "[sample]") {
     DiskThinning thinning;
     thinning.begin(10, {1, 1, 1}, 100, {});
-    thinning.exclude({5, 5, 5});
+    thinning.exclude({5, 5, 5}, DiskThinning::outside);
     const Points one{{1, 1, 1}};
     thinning.begin(10, {1, 1, 1}, 100, one);
     CHECK(thinning.isFree(0));
+}
+
+TEST_CASE("of those that exclude a point the nearest is known, an outside one only if it is alone",
+          "[sample]") {
+    const Points points{{100, 100, 0}, {109, 100, 0}, {104, 100, 0}, {92, 100, 0}, {0, 5, 0}, {300, 300, 0}};
+    for (bool reversed : {false, true}) {
+        DiskThinning thinning;
+        thinning.begin(10, {1, 1, 1}, 81, points); // 9 steps
+        thinning.exclude({-1, 5, 0}, DiskThinning::outside);
+        thinning.exclude({103, 101, 0}, DiskThinning::outside); // nearest to the third
+        thinning.exclude(wide(points[reversed ? 1 : 0]), reversed ? 1 : 0);
+        thinning.exclude(wide(points[reversed ? 0 : 1]), reversed ? 0 : 1);
+        CHECK(thinning.excludedBy(0) == 0);
+        CHECK(thinning.excludedBy(1) == 1);
+        CHECK(thinning.excludedBy(2) == 0); // 4 steps, 5 to the other
+        CHECK(thinning.excludedBy(3) == 0);
+        CHECK(thinning.excludedBy(4) == DiskThinning::outside);
+        CHECK(thinning.isFree(5));
+    }
 }

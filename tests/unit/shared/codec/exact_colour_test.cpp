@@ -24,7 +24,7 @@ Values randomValues(std::size_t count, std::uint32_t unit, std::uint32_t most, s
 
 Bytes encode(const Values& exact, const Values& shown, int channels) {
     ByteWriter to;
-    writeExactColour(to, exact, shown, channels);
+    writeExactColour(to, exact, shown, channels, narrowestWidth(exact));
     return to.take();
 }
 

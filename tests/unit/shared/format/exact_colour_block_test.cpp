@@ -109,6 +109,28 @@ TEST_CASE("exact colours are read only where a colour is asked for") {
     CHECK(need(decodeNode(metadata, fewer)).positions == all.positions);
 }
 
+TEST_CASE("some strata of a node have exact colours, too") {
+    CloudMetadata metadata = meanMetadata();
+    auto [points, shown] = shownPoints(metadata, {}, 500);
+    MemorySource source(fileOf(metadata, need(encodeNode(metadata, {}, points, shown))));
+    auto reader = need(CloudReader::open(source));
+    NodeEntry entry = onlyNode(*reader);
+    const PointBatch all = need(reader->readNode(entry));
+    const int green = metadata.schema.find(attribute_names::green);
+    for (int strata = 1; strata <= strataCount; ++strata) {
+        NodeBytes node{entry, {green}, need(readNow(source, entry.strataRange(strata))), strata};
+        const Bytes exact = need(readNow(source, entry.attributeRange(0)));
+        node.bytes.insert(node.bytes.end(), exact.begin(), exact.end());
+        PointBatch some = need(decodeNode(metadata, node));
+        REQUIRE(some.size() == strataPrefixPoints(entry.pointCount, strata));
+        bool same = true;
+        for (std::size_t i = 0; i < some.size(); ++i)
+            same = same && some.positions[i] == all.positions[i] &&
+                   some.value<std::uint16_t>(0, i) == all.value<std::uint16_t>(green, i);
+        CHECK(same);
+    }
+}
+
 TEST_CASE("a node that shows its own colours has no block of exact ones") {
     CloudMetadata metadata = meanMetadata();
     auto [points, shown] = shownPoints(metadata, {}, 300);

@@ -165,7 +165,7 @@ TEST_CASE("the specification's exact colours are what the code reads and writes"
     std::vector<std::uint16_t> shown{11, 20, 30, 11, 20, 30, 12, 20, 30, 12, 20, 29, 180, 90, 48};
     Bytes bytes = example("exact colours");
     ByteWriter to;
-    writeExactColour(to, exact, shown, 3);
+    writeExactColour(to, exact, shown, 3, narrowestWidth(exact));
     CHECK(hex(to.bytes()) == hex(bytes));
     ByteReader from(bytes);
     std::vector<std::uint32_t> order{0, 1, 2, 3, 4};
