@@ -122,15 +122,18 @@ std::optional<std::chrono::milliseconds> JobRun::worked(Clock::time_point now) c
     return std::chrono::duration_cast<std::chrono::milliseconds>(until - *began_ - waited_);
 }
 
-JobNews JobRun::take(std::string& body) {
+JobNews JobRun::take(std::string& body, std::size_t least) {
     body.clear();
     std::lock_guard lock(mutex_);
     JobNews news;
     news.head = std::move(head_);
     head_.reset();
     news.isWhole = isWhole_;
-    std::swap(body, pending_);
-    room_.notify_all();
+    if (pending_.size() >= least || !hasTaken_ || isEnded_) {
+        std::swap(body, pending_);
+        hasTaken_ = hasTaken_ || !body.empty();
+        room_.notify_all();
+    }
     if (isEnded_) {
         news.isOver = true;
         news.failure = failure_;

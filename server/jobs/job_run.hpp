@@ -49,8 +49,9 @@ class JobRun final : public AnswerWriter {
     const std::string& kind() const { return job_.kind; }
 
     // ---- The connection's thread. The bytes of the body that are there go to `body`, whose old content is
-    // dropped and whose memory is used again.
-    JobNews take(std::string& body);
+    // dropped and whose memory is used again. Fewer than `least` are left there, unless they are the first or
+    // the last.
+    JobNews take(std::string& body, std::size_t least = 1);
 
   private:
     bool waitForRoom(std::unique_lock<std::mutex>& lock);
@@ -66,7 +67,7 @@ class JobRun final : public AnswerWriter {
     std::condition_variable room_;
     std::optional<HttpResponse> head_;
     bool isAnswered_ = false, isWhole_ = false, isEnded_ = false;
-    bool wantsNews_ = false, hasWritten_ = false;
+    bool wantsNews_ = false, hasWritten_ = false, hasTaken_ = false;
     std::optional<Error> failure_;
     std::string pending_; // at most waitingBytes
     std::optional<Clock::time_point> began_, waitsSince_;

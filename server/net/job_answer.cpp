@@ -103,9 +103,10 @@ HttpResponse JobAnswer::overTimeProblem() const {
     return problemResponse({problem_types::outOfTime, cat("this takes longer than ", seconds, " seconds")});
 }
 
-// What there is; if nothing, what there is after a glance's time or as soon as the job says so.
+// What there is, if it is worth sending; else what there is after a glance's time or as soon as the job says
+// so.
 Task<void> JobAnswer::nextNews() {
-    news_ = run_->take(body_);
+    news_ = run_->take(body_, JobRun::worthSendingBytes);
     if (news_.head || !body_.empty() || news_.isOver)
         co_return;
     wake_->expires_after(glance);
