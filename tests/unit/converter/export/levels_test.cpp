@@ -3,6 +3,7 @@
 #include "tests/unit/converter/export/export_fixture.hpp"
 
 #include <cmath>
+#include <map>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -40,21 +41,25 @@ void LevelsFixture::checkSpacings() const {
     REQUIRE(levels >= 2);
     for (double spacing : {root * 1.01, root * 7, root / 2, root / 64}) {
         INFO("spacing " << spacing << ", root " << root);
-        // By looking at every pair of points of a node, in stored order.
+        // By looking at every pair of points of a node whose x are near enough, in stored order.
         std::vector<bool> wanted(all.points.size(), false);
-        std::size_t first = 0;
+        std::multimap<double, std::size_t> kept; // of the node, by x
         for (std::size_t i = 0; i < all.points.size(); ++i) {
             const NodeEntry& node = all.nodes[i];
             if (i == 0 || node.key != all.nodes[i - 1].key)
-                first = i;
+                kept.clear();
             double own = root / (1 << node.key.level);
             if (own < spacing && node.key.level > 0)
                 continue;
             bool free = true;
             bool thins = node.childMask == 0 || own < spacing || all.metadata.sampling != Sampling::poisson;
-            for (std::size_t k = first; k < i && thins && free; ++k)
-                free = !wanted[k] || squaredDistance(all, i, k) >= spacing * spacing;
+            const double x = double(all.points.positions[i].x) * 0.01;
+            for (auto k = kept.lower_bound(x - 1.001 * spacing);
+                 k != kept.end() && k->first <= x + 1.001 * spacing && thins && free; ++k)
+                free = squaredDistance(all, i, k->second) >= spacing * spacing;
             wanted[i] = free;
+            if (free)
+                kept.emplace(x, i);
         }
         ExportOptions options;
         options.filter.spacing = spacing;

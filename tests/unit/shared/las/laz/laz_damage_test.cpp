@@ -1,4 +1,5 @@
 // Damaged LAZ files: an error or points, never a crash, and memory in proportion to the file.
+#include "tests/support/byte_values.hpp"
 #include "tests/support/mutate.hpp"
 #include "tests/unit/shared/las/allocation_meter.hpp"
 #include "tests/unit/shared/las/laz/laz_bytes.hpp"
@@ -81,10 +82,10 @@ TEST_CASE("any value of any byte of the LASzip record is answered", "[laz]") {
         const PointBatch points = requireLas(whole).points;
         const std::size_t record = pointDataOffset(whole) - 34 - 6 * (format == 5 ? 5 : 4);
         for (std::size_t at = record; at < pointDataOffset(whole); ++at)
-            for (int value = 0; value < 256; ++value) {
+            for (std::uint8_t value : everyDamage(whole[at])) {
                 CAPTURE(format, at - record, value);
                 Bytes bytes = whole;
-                bytes[at] = static_cast<std::uint8_t>(value);
+                bytes[at] = value;
                 Answer answer = requireSane(bytes);
                 // Versions, options and special records (bytes 4-11 and 16-31) say nothing about the points.
                 const std::size_t place = at - record;
@@ -103,13 +104,14 @@ TEST_CASE("any value of any byte of the chunk table gives the points or an error
             const PointBatch points = requireLas(whole).points;
             const std::size_t front = pointDataOffset(whole);
             const auto table = static_cast<std::size_t>(loadLe<std::uint64_t>(whole.data() + front));
-            std::size_t recovered = 0;
-            for (std::size_t i = 0; i < 8 + whole.size() - table; ++i)
-                for (int value = 0; value < 256; ++value) {
-                    const std::size_t at = i < 8 ? front + i : table + i - 8;
+            std::size_t recovered = 0, tried = 0;
+            for (std::size_t i = 0; i < 8 + whole.size() - table; ++i) {
+                const std::size_t at = i < 8 ? front + i : table + i - 8;
+                for (std::uint8_t value : everyDamage(whole[at])) {
                     CAPTURE(variable, format, i, value);
                     Bytes bytes = whole;
-                    bytes[at] = static_cast<std::uint8_t>(value);
+                    bytes[at] = value;
+                    ++tried;
                     Answer answer = requireSane(bytes);
                     const bool same = answer.read && answer.points.columns == points.columns;
                     recovered += same;
@@ -118,7 +120,9 @@ TEST_CASE("any value of any byte of the chunk table gives the points or an error
                     if (i < 8 + 8 && (format == 8 || !variable))
                         REQUIRE((same || (answer.opened && i >= 8)));
                 }
-            CHECK(recovered > (variable && format == 1 ? 500 : 1000));
+            }
+            CAPTURE(variable, format, recovered, tried);
+            CHECK(recovered * 100 > tried * (variable && format == 1 ? 7 : 14));
         }
 }
 
@@ -128,7 +132,7 @@ TEST_CASE("damaged chunks give errors or points", "[laz]") {
         const Bytes whole = lazBytes(recipe, smoothRecords(format, 3, samplePoints));
         const Bytes first =
             format <= 5 ? lazBytes(firstVersion(recipe), smoothRecords(format, 3, samplePoints)) : Bytes{};
-        for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        for (std::uint64_t seed = 0; seed < damages(300); ++seed) {
             CAPTURE(format, seed);
             requireSane(mutate(whole, seed).bytes);
             if (format <= 5)
@@ -137,7 +141,7 @@ TEST_CASE("damaged chunks give errors or points", "[laz]") {
         // Of chunks alone, with the file's frame as it was.
         std::mt19937 random(static_cast<std::uint32_t>(format));
         const std::size_t front = pointDataOffset(whole) + 8;
-        for (int run = 0; run < 300; ++run) {
+        for (int run = 0; run < damages(300); ++run) {
             Bytes bytes = whole;
             for (int change = 0; change < 1 + run % 20; ++change)
                 bytes[front + random() % (bytes.size() - front)] = static_cast<std::uint8_t>(random());
