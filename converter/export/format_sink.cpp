@@ -2,6 +2,7 @@
 
 #include "converter/export/csv_sink.hpp"
 #include "converter/export/las_summary.hpp"
+#include "converter/export/parallel_chunks.hpp"
 #include "converter/export/ply_sink.hpp"
 #include "shared/base/text.hpp"
 
@@ -67,6 +68,7 @@ Result<FormatPlan> planFormat(ExportFormat format, bool toBeOverwritten, CloudRe
         STIPPLE_TRY(las, LasPlan::make(input, filter.reach(), input.metadata.pointCount,
                                        format == ExportFormat::laz));
         plan.las = std::move(las);
+        plan.las->options.makeChunkWork = parallelChunks(options.threads);
         if (!toBeOverwritten) {
             STIPPLE_TRY(summary, summarizeForLas(reader, name, filter, input, *plan.las, options));
             plan.pointCount = summary.pointCount;

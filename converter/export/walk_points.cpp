@@ -233,6 +233,8 @@ class Walk {
     }
 
     Status takeOne() {
+        if (options_.stop && *options_.stop)
+            return Error{ErrorCode::cancelled, "interrupted", "", ""};
         auto result = work_.take();
         if (!result)
             return result.error();

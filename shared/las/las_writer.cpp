@@ -95,7 +95,8 @@ Status FileWriter::open(std::unique_ptr<ByteSink> to, const WriterOptions& optio
     if (!header_.compressed)
         return {};
     STIPPLE_TRY(chunks, laz::ChunkWriter::create(
-                            *to_, laz::laszipRecordFor(header_.pointFormat, header_.recordLength)));
+                            *to_, laz::laszipRecordFor(header_.pointFormat, header_.recordLength),
+                            options.makeChunkWork ? options.makeChunkWork() : nullptr));
     chunks_ = std::move(chunks);
     return chunks_->begin();
 }

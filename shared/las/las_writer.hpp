@@ -3,16 +3,19 @@
 // header says of the points is known before.
 //
 // Thread: one at a time per writer. Memory: one block of packed records (about 1 MiB); for LAZ also the
-// compressed bytes of a chunk of 50,000 points, and its models (about 2 MB).
+// compressed bytes of a chunk of 50,000 points, and its models (about 2 MB); more with a ChunkWork
+// (laz/chunk_writer.hpp).
 #pragma once
 
 #include "shared/base/result.hpp"
 #include "shared/io/byte_sink.hpp"
+#include "shared/las/chunk_work.hpp"
 #include "shared/las/las_header.hpp"
 #include "shared/las/las_reader.hpp"
 #include "shared/las/point_summary.hpp"
 #include "shared/points/point_batch.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +36,8 @@ struct WriterOptions {
     std::uint64_t expectedPoints = 0; // 0: unknown
     // LAZ: pointwise chunks of version 2 for formats 0-5, layered ones of version 3 from format 6 on.
     bool compressed = false;
+    // Makes who compresses the chunks of LAZ; null, or an answer of null: the thread that writes.
+    std::function<std::unique_ptr<ChunkWork>()> makeChunkWork = nullptr;
     std::string wkt;       // written as the OGC WKT record; empty: none
     std::vector<Vlr> vlrs; // further records, copied as they are (not: WKT, extra bytes, LAZ)
     std::string systemIdentifier = "stipple";

@@ -202,6 +202,37 @@ TEST_CASE("the same points in the same order for any number of threads") {
     }
 }
 
+TEST_CASE("a LAZ file has the same bytes for any number of threads, and the points of LAS") {
+    for (int format : {2, 7}) {
+        TemporaryFolder folder;
+        writeScan(surfaceScan(format, 160000, 1), folder / "in.las"); // more than three chunks
+        convertOrFail({folder / "in.las"}, folder / "c.stipple");
+        exportOrFail(folder / "c.stipple", folder / "out.las");
+        const LasContent las = readLas(folder / "out.las");
+        std::string first;
+        for (int threads : {1, 2, 5}) {
+            ExportOptions options;
+            options.threads = threads;
+            exportOrFail(folder / "c.stipple", folder / "out.laz", options);
+            if (threads == 1)
+                first = textOf(folder / "out.laz");
+            CHECK((textOf(folder / "out.laz") == first));
+            requireEqual(readLas(folder / "out.laz").points, las.points);
+        }
+        // Interrupted while chunks wait: nothing is left, and nobody hangs.
+        std::atomic<bool> stop{false};
+        ExportOptions options;
+        options.threads = 4;
+        options.stop = &stop;
+        auto result = exportFile(
+            folder / "c.stipple", folder / "stopped.laz", options,
+            [&](const std::string&, std::uint64_t done, std::uint64_t) { stop = stop || done > 20000; });
+        REQUIRE_FALSE(result.ok());
+        CHECK(result.error().code == ErrorCode::cancelled);
+        CHECK(folder.files() == 4);
+    }
+}
+
 TEST_CASE("a filter that means nothing is refused with a reason") {
     SmallCloudFile file;
     auto sentence = [&](const PointFilter& filter) {
