@@ -1,8 +1,8 @@
 #include "converter/build/build.hpp"
 
-#include "converter/build/parallel.hpp"
 #include "converter/build/schedule.hpp"
 #include "converter/build/subtree_plan.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 #include "shared/format/picture_attributes.hpp"
 

@@ -2,9 +2,9 @@
 
 #include "converter/build/input_parts.hpp"
 #include "converter/build/memory_share.hpp"
-#include "converter/build/parallel.hpp"
 #include "converter/build/row_dealer.hpp"
 #include "converter/build/tile.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>

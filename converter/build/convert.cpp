@@ -4,10 +4,10 @@
 #include "converter/build/known_sources.hpp"
 #include "converter/build/memory_share.hpp"
 #include "converter/build/output_check.hpp"
-#include "converter/build/parallel.hpp"
 #include "converter/build/scan.hpp"
 #include "converter/build/tile.hpp"
 #include "converter/build/work_folder.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 #include "shared/codec/checksum.hpp"
 #include "shared/io/file_source.hpp"
@@ -184,6 +184,7 @@ class Conversion {
         scanning.crs = options_.crs;
         scanning.input = options_.input;
         scanning.input.stop = options_.stop;
+        scanning.input.threads = threads_;
         auto scanned = scanInputs(inputs_, scanning);
         if (!scanned)
             return scanned.error().code == ErrorCode::cancelled ? endBeforeWork() : scanned.error();

@@ -1,6 +1,6 @@
 #include "converter/build/known_sources.hpp"
 
-#include "converter/build/parallel.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <map>

@@ -1,6 +1,6 @@
 #include "converter/build/sample.hpp"
 
-#include "converter/build/parallel.hpp"
+#include "converter/parallel/parallel.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -1,6 +1,6 @@
 #include "converter/build/schedule.hpp"
 
-#include "converter/build/parallel.hpp"
+#include "converter/parallel/parallel.hpp"
 
 #include <algorithm>
 #include <condition_variable>

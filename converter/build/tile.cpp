@@ -1,8 +1,8 @@
 #include "converter/build/tile.hpp"
 
 #include "converter/build/input_parts.hpp"
-#include "converter/build/parallel.hpp"
 #include "converter/build/row_dealer.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>

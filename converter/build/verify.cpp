@@ -3,7 +3,7 @@
 #include "converter/build/compare_inputs.hpp"
 #include "converter/build/memory_share.hpp"
 #include "converter/build/node_checks.hpp"
-#include "converter/build/parallel.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <filesystem>
@@ -87,6 +87,7 @@ class Verification {
         ScanOptions scanning;
         scanning.input = options_.reading;
         scanning.input.stop = options_.stop;
+        scanning.input.threads = threads_;
         if (metadata.crs.known())
             scanning.target = metadata.crs; // as they were reprojected for the file
         STIPPLE_TRY(scan, scanInputs(inputs, scanning));

@@ -1,12 +1,12 @@
 #include "converter/export/export_file.hpp"
 
 #include "converter/build/output_check.hpp"
-#include "converter/build/parallel.hpp"
 #include "converter/export/corridor_attributes.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/geojson.hpp"
 #include "converter/export/polygon_crs.hpp"
 #include "converter/export/standard_output.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 

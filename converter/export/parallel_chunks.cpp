@@ -1,7 +1,7 @@
 #include "converter/export/parallel_chunks.hpp"
 
-#include "converter/build/parallel.hpp"
 #include "converter/export/ordered_work.hpp"
+#include "converter/parallel/parallel.hpp"
 
 #include <new>
 

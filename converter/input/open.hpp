@@ -14,6 +14,9 @@ struct InputOptions {
     // Grid step of inputs whose coordinates are floats or decimals, world units. 0: chosen by what they hold
     // (input/float_grid.hpp).
     double scale = 0;
+    // What reads a file once when it is opened, because its header does not state what it holds, does so with
+    // so many threads. They decide nothing but the time.
+    int threads = 1;
     // Once true, whatever reads the file ends with `cancelled`, also opening it. Must outlive the input.
     const std::atomic<bool>* stop = nullptr;
 };

@@ -62,7 +62,17 @@ struct RowPlace {
     std::uint64_t line = 1;   // of text
     // Of files in sections, which begin with a header of their own:
     std::uint64_t section = 0, rowInSection = 0, sectionOffset = 0;
+    // Rows that begin at this byte, or behind it, are not read from here.
+    std::uint64_t end = ~std::uint64_t{0};
 };
+
+// Places between which the rows can be read apart from each other.
+struct RowStretches {
+    std::vector<RowPlace> places; // in order; the first is begin()
+    // Row and line of the places are those of the file; else of each they count from its own beginning.
+    bool areCounted = false;
+};
+inline constexpr std::uint64_t rowsPerPart = std::uint64_t{1} << 18;
 
 class RowReader {
   public:
@@ -92,6 +102,12 @@ class TableFormat {
     virtual Result<std::unique_ptr<RowReader>> rowsFrom(const RowPlace& place) const = 0;
     // The place of the first row.
     virtual RowPlace begin() const = 0;
+    // Where several threads may begin, without reading the rows: the same at every opening. One place: only
+    // at the first row.
+    virtual RowStretches stretches() const { return {{begin()}}; }
+    // Were the stretches well divided? Asked when all have been read: `endOfFirst` is the place behind the
+    // first one's rows, `rows` those of all. If not, the rows are read again, one after the other.
+    virtual bool areWhole(const RowPlace&, std::uint64_t) const { return true; }
     // Called once when every row has been measured: the last moment to name columns and to warn.
     virtual void finish(const std::vector<FieldRange>&) {}
     // Called behind finish(). Decimals that the coordinates have, where they are not text but were made from

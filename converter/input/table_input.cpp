@@ -2,6 +2,7 @@
 #include "converter/input/table_coordinates.hpp"
 #include "converter/input/table_plan.hpp"
 #include "converter/input/table_values.hpp"
+#include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
@@ -11,7 +12,6 @@
 namespace stipple {
 
 namespace {
-constexpr std::uint64_t rowsPerPart = std::uint64_t{1} << 18;
 constexpr int float32Bits = 24;
 constexpr std::size_t blockBytes = std::size_t{1} << 20, batchBytes = std::size_t{1} << 24;
 
@@ -19,6 +19,13 @@ constexpr std::size_t blockBytes = std::size_t{1} << 20, batchBytes = std::size_
 struct TablePart {
     RowPlace place;
     std::uint64_t rows = 0, points = 0;
+};
+
+// What was found between two places at which rows can be entered.
+struct Stretch {
+    Measure measure;
+    std::vector<TablePart> parts;
+    RowPlace end; // behind its last row
 };
 
 class TableInput final : public PointInput {
@@ -29,7 +36,7 @@ class TableInput final : public PointInput {
 
     Status prepare(const InputOptions& options) {
         Measure measure;
-        STIPPLE_CHECK(measureParts(measure));
+        STIPPLE_CHECK(measureAll(measure, options));
         measure.fields.resize(table().fields.size());
         format_->finish(measure.fields);
         plan_ = planTable(table(), measure.fields);
@@ -66,9 +73,25 @@ class TableInput final : public PointInput {
     }
 
   private:
-    // Reads every row once, and divides them.
-    Status measureParts(Measure& measure) {
-        STIPPLE_TRY(reader, format_->rowsFrom(format_->begin()));
+    // Reads every row once, and divides them. What the parts are does not depend on the threads.
+    Status measureAll(Measure& measure, const InputOptions& options) {
+        const RowStretches found = format_->stretches();
+        std::vector<Stretch> stretches(found.places.size());
+        Status done = parallelFor(stretches.size(), options.threads, options.stop, [&](std::size_t i, int) {
+            return measureStretch(found.places[i], stretches[i]);
+        });
+        if (stretches.size() > 1 && !(done.ok() && areWhole(stretches)) && !isOutside(done)) {
+            // One after the other they are read as the format means them, and errors know their lines.
+            stretches.assign(1, {});
+            done = measureStretch(format_->begin(), stretches[0]);
+        }
+        STIPPLE_CHECK(done);
+        join(stretches, found.areCounted, measure);
+        return {};
+    }
+
+    Status measureStretch(const RowPlace& place, Stretch& stretch) const {
+        STIPPLE_TRY(reader, format_->rowsFrom(place));
         Rows rows;
         ReadReport unused;
         TablePart part{reader->place()};
@@ -77,17 +100,53 @@ class TableInput final : public PointInput {
                                                  rowsOfBlock(), rowsPerPart - part.rows))));
             const bool ends = rows.count == 0;
             part.rows += rows.count;
-            const std::uint64_t before = measure.points;
+            const std::uint64_t before = stretch.measure.points;
             keepPoints(table(), rows, unused);
-            measureRows(table(), rows, measure);
-            part.points += measure.points - before;
+            measureRows(table(), rows, stretch.measure);
+            part.points += stretch.measure.points - before;
             if ((ends && part.rows > 0) || part.rows == rowsPerPart) {
-                parts_.push_back(part);
-                inputParts_.push_back({part.points});
+                stretch.parts.push_back(part);
                 part = TablePart{reader->place()};
             }
+            stretch.end = reader->place();
             if (ends)
                 return {};
+        }
+    }
+
+    static std::uint64_t rowsOf(const Stretch& stretch) {
+        std::uint64_t rows = 0;
+        for (const TablePart& part : stretch.parts)
+            rows += part.rows;
+        return rows;
+    }
+    bool areWhole(const std::vector<Stretch>& stretches) const {
+        std::uint64_t rows = 0;
+        for (const Stretch& stretch : stretches)
+            rows += rowsOf(stretch);
+        return format_->areWhole(stretches[0].end, rows);
+    }
+    // An error that reading once more would not explain.
+    static bool isOutside(const Status& done) {
+        return !done.ok() &&
+               (done.error().code == ErrorCode::cancelled || done.error().code == ErrorCode::ioFailed ||
+                done.error().code == ErrorCode::changed || done.error().code == ErrorCode::outOfMemory);
+    }
+
+    void join(const std::vector<Stretch>& stretches, bool areCounted, Measure& measure) {
+        std::uint64_t rowsBefore = 0, linesBefore = 0;
+        for (std::size_t s = 0; s < stretches.size(); ++s) {
+            const Stretch& stretch = stretches[s];
+            const bool isRelative = s > 0 && !areCounted;
+            for (TablePart part : stretch.parts) {
+                part.place.row += isRelative ? rowsBefore : 0;
+                part.place.line += isRelative ? linesBefore : 0;
+                parts_.push_back(part);
+                inputParts_.push_back({part.points});
+            }
+            measure.add(stretch.measure);
+            rowsBefore += rowsOf(stretch);
+            linesBefore += stretch.end.line - 1;
         }
     }
 

@@ -126,6 +126,39 @@ void DecimalRange::addDecimals(int count) {
     decimals = count;
 }
 
+void FieldRange::add(const FieldRange& other) {
+    whole = whole && other.whole;
+    fractional = fractional || other.fractional;
+    allFinite = allFinite && other.allFinite;
+    addWhole(*this, other.minWhole, other.maxWhole);
+    if (!other.any)
+        return;
+    min = any ? std::min(min, other.min) : other.min;
+    max = any ? std::max(max, other.max) : other.max;
+    any = true;
+}
+
+void DecimalRange::add(DecimalRange other) {
+    cut = cut || other.cut;
+    if (!other.any)
+        return;
+    addDecimals(other.decimals);
+    other.addDecimals(decimals);
+    min = any ? std::min(min, other.min) : other.min;
+    max = any ? std::max(max, other.max) : other.max;
+    any = true;
+}
+
+void Measure::add(const Measure& other) {
+    fields.resize(std::max(fields.size(), other.fields.size()));
+    for (std::size_t f = 0; f < other.fields.size(); ++f)
+        fields[f].add(other.fields[f]);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        decimalAxes[axis].add(other.decimalAxes[axis]);
+    bounds.extend(other.bounds);
+    points += other.points;
+}
+
 void DecimalRange::add(const Number& number) {
     std::int64_t mantissa = number.mantissa;
     int exponent = number.exponent;

@@ -16,6 +16,7 @@ struct FieldRange {
     std::int64_t minWhole = 0;
     std::uint64_t maxWhole = 0; // meaningful where `whole`
 
+    void add(const FieldRange& other);
     bool isWithin(double low, double high) const { return !any || (allFinite && min >= low && max <= high); }
     bool isWholeWithin(double low, double high) const { return whole && isWithin(low, high); }
 };
@@ -28,6 +29,7 @@ struct DecimalRange {
 
     static constexpr int mostDecimals = 24;
     void add(const Number& number);
+    void add(DecimalRange other);
     void addDecimals(int count);
 };
 
@@ -36,6 +38,8 @@ struct Measure {
     std::array<DecimalRange, 3> decimalAxes; // of coordinates of text
     BoxD bounds;                             // of the points
     std::uint64_t points = 0;
+
+    void add(const Measure& other); // of other rows of the same table
 };
 
 // Takes away the rows that are no points: marked invalid, or a coordinate that is not finite or out of range

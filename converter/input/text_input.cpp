@@ -11,6 +11,7 @@
 namespace stipple {
 
 namespace {
+constexpr std::uint64_t stretchBytes = std::uint64_t{1} << 22; // read by one thread without asking
 constexpr std::size_t startBytes = std::size_t{1} << 16, mostColumns = 1000;
 
 // The whole lines of the beginning of a file.
@@ -84,10 +85,13 @@ class TextReader final : public RowReader {
     Status next(Rows& rows, std::size_t most) override {
         rows.resize(fields_, most);
         std::size_t filled = 0;
+        bool atEndOfFile = false;
         while (filled < most) {
             STIPPLE_TRY(more, lines_.load());
-            if (!more)
+            if (!more || lines_.offset() >= place_.end) {
+                atEndOfFile = !more;
                 break;
+            }
             const char first = firstByte(lines_);
             if (first == '\n' || first == '#' || (first == '/' && isComment(lineText(lines_)))) {
                 passLine(lines_);
@@ -102,7 +106,7 @@ class TextReader final : public RowReader {
         }
         if (filled < most)
             rows.resize(fields_, filled);
-        if (filled == 0 && place_.rowInSection < place_.section)
+        if (counts_ && filled == 0 && atEndOfFile && place_.rowInSection < place_.section)
             return Error{
                 ErrorCode::truncated,
                 cat("the file promises ", place_.section, " points, but holds ", place_.rowInSection),
@@ -170,8 +174,33 @@ class TextFormat final : public TableFormat {
     RowPlace begin() const override { return begin_; }
     SharedSource& source() const override { return source_; }
     Result<std::unique_ptr<RowReader>> rowsFrom(const RowPlace& place) const override {
-        return std::unique_ptr<RowReader>(std::make_unique<TextReader>(source_, lineFormat_, table_.fields,
-                                                                       shape_.countFirst, findings_, place));
+        // Behind the first stretch there are rows alone, unless they are read again (areWhole).
+        const bool counts = shape_.countFirst && !isLaterStretch(place);
+        return std::unique_ptr<RowReader>(
+            std::make_unique<TextReader>(source_, lineFormat_, table_.fields, counts, findings_, place));
+    }
+
+    // Of some megabytes each, between two lines.
+    RowStretches stretches() const override {
+        RowStretches result{{begin_}};
+        for (std::uint64_t at = begin_.offset + stretchBytes; at + stretchBytes / 2 < source_.sizeBytes();
+             at += stretchBytes) {
+            std::optional<std::uint64_t> line = lineBehind(at);
+            if (!line)
+                return {{begin_}};
+            result.places.back().end = *line;
+            RowPlace next;
+            next.offset = *line;
+            next.section = laterStretch;
+            result.places.push_back(next);
+        }
+        return result;
+    }
+    // One section of points, as many as the line above the first says: what begins another is a line in
+    // their midst, which only who has counted the rows before it knows.
+    bool areWhole(const RowPlace& endOfFirst, std::uint64_t rows) const override {
+        return !shape_.countFirst ||
+               (endOfFirst.rowInSection == endOfFirst.row && endOfFirst.section == rows);
     }
 
     void finish(const std::vector<FieldRange>& ranges) override {
@@ -197,6 +226,23 @@ class TextFormat final : public TableFormat {
     }
 
   private:
+    static constexpr std::uint64_t laterStretch = ~std::uint64_t{0}; // as RowPlace::section
+    static bool isLaterStretch(const RowPlace& place) { return place.section == laterStretch; }
+
+    // Where the first line that begins behind `at` begins; nothing if that is far, or can't be read.
+    std::optional<std::uint64_t> lineBehind(std::uint64_t at) const {
+        constexpr std::uint64_t pieceBytes = std::uint64_t{1} << 14;
+        for (const std::uint64_t end = at + TextLines::longestLine; at < end; at += pieceBytes) {
+            auto piece = source_.read({at, pieceBytes});
+            if (!piece)
+                return std::nullopt;
+            auto found = std::find(piece->begin(), piece->end(), '\n');
+            if (found != piece->end())
+                return at + static_cast<std::uint64_t>(found - piece->begin()) + 1;
+        }
+        return std::nullopt;
+    }
+
     Status nameColumns(const std::string& wanted) {
         std::vector<std::string> names = shape_.names;
         const std::size_t count = shape_.isNumber.size();

@@ -215,7 +215,8 @@ Status E57Input::describe(const std::string& path, OpenFile& file, const InputOp
     bool isMeasured = mustMeasure(layout_, ranged);
     Measure measured;
     if (isMeasured) {
-        STIPPLE_TRY(result, measure(*file.source, layout_, ranged));
+        STIPPLE_TRY(result,
+                    measure({[this] { return take(); }, options.threads, options.stop}, layout_, ranged));
         measured = std::move(result);
     } else {
         measured = countOnly(layout_);

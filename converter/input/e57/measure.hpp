@@ -4,6 +4,10 @@
 
 #include "converter/input/e57/attributes.hpp"
 
+#include <atomic>
+#include <functional>
+#include <memory>
+
 namespace stipple::e57 {
 
 // What all passes know of a file.
@@ -31,8 +35,14 @@ struct Measure {
     MeasuredRanges ranges;
 };
 
-// Reads the coordinates, and `fields` of each scan.
-Result<Measure> measure(ByteSource& source, const Layout& layout,
+// Reads the coordinates, and `fields` of each scan, with so many threads, each of which opens a source of the
+// file for itself. Errors: that of the first span that has one; those of `open`.
+struct MeasureOptions {
+    std::function<Result<std::unique_ptr<ByteSource>>()> open; // Thread: any
+    int threads = 1;
+    const std::atomic<bool>* stop = nullptr;
+};
+Result<Measure> measure(const MeasureOptions& options, const Layout& layout,
                         const std::vector<std::vector<std::size_t>>& fields);
 
 } // namespace stipple::e57

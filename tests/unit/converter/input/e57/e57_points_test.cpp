@@ -231,6 +231,50 @@ TEST_CASE("a rotated scan is turned, then moved, and lands within a quarter of i
     CHECK(read.report.maxRounding <= 0.00025);
 }
 
+TEST_CASE("rotated scans that several threads measure are what one finds, and the first error is told") {
+    TemporaryFolder folder;
+    E57File file;
+    for (int s = 0; s < 7; ++s) {
+        std::vector<std::int64_t> x, y, z;
+        for (int i = 0; i < 2000 + 100 * s; ++i) {
+            x.push_back(i * 37 % 5000);
+            y.push_back(i * 91 % 3000 + s);
+            z.push_back(i % 100 * s);
+        }
+        E57Scan& scan = file.scans.emplace_back();
+        scan.fields = {scaledField("cartesianX", 0, 100000, "0.001", "0", x),
+                       scaledField("cartesianY", 0, 100000, "0.001", "0", y),
+                       scaledField("cartesianZ", 0, 100000, "0.001", "5", z)};
+        scan.xml = cat("<pose type=\"Structure\">", rotationXml(0.8, 0, 0, 0.6),
+                       translationXml("10", "20", "30"), "</pose>");
+    }
+    const Bytes bytes = file.bytes();
+    std::string path = writeBytes(folder.file("scan.e57"), bytes);
+    auto one = readE57(path);
+    REQUIRE(one.ok());
+    REQUIRE(one->points.size() == 7 * 2000 + 2100);
+    for (int threads : {2, 5}) {
+        auto several = readE57(path, 0, threads);
+        REQUIRE(several.ok());
+        CHECK(several->description.bounds == one->description.bounds);
+        CHECK(several->description.grid.scale == one->description.grid.scale);
+        CHECK(several->description.grid.offset == one->description.grid.offset);
+        CHECK((several->points.positions == one->points.positions));
+    }
+    // Pages of two scans are damaged: of the first one it is told, whoever meets which.
+    Bytes damaged = bytes;
+    damaged[bytes.size() / 3] ^= 1;
+    damaged[bytes.size() / 2] ^= 1;
+    writeBytes(path, damaged);
+    auto refused = readE57(path);
+    REQUIRE_FALSE(refused.ok());
+    for (int threads : {2, 5}) {
+        auto also = readE57(path, 0, threads);
+        REQUIRE_FALSE(also.ok());
+        CHECK(also.error().sentence() == refused.error().sentence());
+    }
+}
+
 TEST_CASE("a rotated scan with an absurdly fine step is placed as finely as doubles tell") {
     E57Scan scan;
     for (const char* name : {"cartesianX", "cartesianY", "cartesianZ"})

@@ -45,9 +45,9 @@ inline std::string writeBytes(const std::string& path, const Bytes& bytes) {
 }
 
 // Checks the interface's promises on the way: sizes of batches, counts of parts, bounds.
-inline Result<E57Points> readE57(const std::string& path, double scale = 0) {
+inline Result<E57Points> readE57(const std::string& path, double scale = 0, int threads = 1) {
     E57Points result;
-    STIPPLE_TRY(input, openE57Input(path, {.scale = scale}));
+    STIPPLE_TRY(input, openE57Input(path, {.scale = scale, .threads = threads}));
     result.description = input->description();
     result.parts = input->parts();
     const Schema& schema = result.description.schema;

@@ -1,4 +1,4 @@
-#include "converter/build/parallel.hpp"
+#include "converter/parallel/parallel.hpp"
 
 #include <algorithm>
 #include <mutex>
