@@ -5,11 +5,6 @@
 
 namespace stipple::server {
 
-namespace {
-// What is left of a file's part once the buffer is full goes by sendfile if it is more than this.
-constexpr std::uint64_t worthSendfile = 16 * 1024;
-} // namespace
-
 BufferPool::Buffer BufferPool::take() {
     if (spare_.empty())
         return Buffer(new char[bufferBytes]); // not zeroed, as make_unique would
@@ -39,11 +34,13 @@ ResponseSender::Step ResponseSender::step() {
     for (;;) {
         if (begin_ == end_ && !fill())
             return end(false); // a file is not what it was
-        bool goesOn = begin_ < end_ ? flush() : isAtEnd() ? false : sendFile();
-        if (begin_ == end_ && isAtEnd() && wait_ == Wait::nothing)
-            return end(sentFrom_ == nullptr || sentFrom_->isUnchanged());
+        bool goesOn = begin_ == end_ || flush();
+        if (begin_ == end_ && isAtEnd())
+            return end(true);
         if (wait_ == Wait::never)
             return end(false);
+        if (!goesOn || inStep_ >= stepBytes)
+            forgetUnsent();
         if (!goesOn)
             return Step::wait;
         if (inStep_ >= stepBytes)
@@ -56,9 +53,10 @@ ResponseSender::Step ResponseSender::end(bool isComplete) {
     return Step::done;
 }
 
-// Puts into the buffer what comes next, until it is full or a large part of a file is better sent directly.
+// Puts into the buffer what comes next, until it is full.
 bool ResponseSender::fill() {
     begin_ = end_ = headBytes_ = 0;
+    tail_ = {};
     auto append = [this](std::string_view text) {
         if (!buffer_)
             buffer_ = pool_.take();
@@ -74,13 +72,11 @@ bool ResponseSender::fill() {
     while (!isAtEnd() && end_ < BufferPool::bufferBytes) {
         const BodyPart& part = response_.body[part_];
         if (const auto* slice = std::get_if<FileSlice>(&part)) {
-            std::uint64_t left = slice->size - partBytes_;
-            if (stream_.canSendFile() && end_ == 0 && left > worthSendfile)
-                return true;
             if (!fillFrom(*slice))
                 return false;
         } else {
             const auto& text = std::get<std::string>(part);
+            tail_ = {};
             partBytes_ += append(std::string_view(text).substr(static_cast<std::size_t>(partBytes_)));
             if (partBytes_ == text.size())
                 nextPart();
@@ -97,11 +93,25 @@ bool ResponseSender::fillFrom(const FileSlice& slice) {
     if (count > 0 && !(slice.file->readAt(slice.offset + partBytes_, buffer_.get() + end_, count) &&
                        slice.file->isUnchanged()))
         return false;
+    tail_ = {true, end_, part_, partBytes_};
     end_ += count;
     partBytes_ += count;
     if (partBytes_ == slice.size)
         nextPart();
     return true;
+}
+
+// What is only a file's in the buffer can be read again: slow clients of large files must not keep it.
+void ResponseSender::forgetUnsent() {
+    if (begin_ < end_) {
+        if (!tail_.isOfFile || begin_ < tail_.begin || !stream_.mayWriteAnew())
+            return;
+        part_ = tail_.part;
+        partBytes_ = tail_.partBytes + (begin_ - tail_.begin);
+        begin_ = end_ = headBytes_ = 0;
+    }
+    if (buffer_)
+        pool_.give(std::move(buffer_));
 }
 
 void ResponseSender::nextPart() {
@@ -117,27 +127,6 @@ bool ResponseSender::flush() {
     outcome_.bodyBytes += moved.bytes - ofHead;
     begin_ += moved.bytes;
     inStep_ += moved.bytes;
-    return wait_ == Wait::nothing;
-}
-
-bool ResponseSender::sendFile() {
-    if (buffer_)
-        pool_.give(std::move(buffer_)); // slow clients of large files must not keep it
-    const auto& slice = std::get<FileSlice>(response_.body[part_]);
-    if (inStep_ == 0 && !slice.file->isUnchanged()) {
-        wait_ = Wait::never;
-        return false;
-    }
-    std::size_t count =
-        static_cast<std::size_t>(std::min<std::uint64_t>(slice.size - partBytes_, stepBytes - inStep_));
-    Moved moved = stream_.sendFile(slice.file->descriptor(), slice.offset + partBytes_, count);
-    wait_ = moved.wait;
-    sentFrom_ = slice.file.get();
-    outcome_.bodyBytes += moved.bytes;
-    inStep_ += moved.bytes;
-    partBytes_ += moved.bytes;
-    if (partBytes_ == slice.size)
-        nextPart();
     return wait_ == Wait::nothing;
 }
 

@@ -21,7 +21,7 @@ struct SendOutcome {
 // Of fixed size, handed out again and again. Lives on one thread.
 class BufferPool {
   public:
-    // A head and 64 KiB of a file: measured on loopback, up to there copying costs no more than sendfile.
+    // A head and 64 KiB of a file.
     static constexpr std::size_t bufferBytes = 68 * 1024;
     using Buffer = std::unique_ptr<char[]>;
     Buffer take();
@@ -31,10 +31,12 @@ class BufferPool {
     std::vector<Buffer> spare_;
 };
 
-// The head and what fits beside it of the body leave in one call, from a buffer of the pool that is held
-// until then. What is left of a file follows by sendfile, or through the buffer where there is TLS (a mapped
-// file would be SIGBUS once it is cut). A file that was cut or written to since it was opened ends the body
-// early: never padding, never bytes of another version.
+// The head and what fits beside it of the body leave in one call, from a buffer of the pool. Files are read
+// into it and looked at afterwards, so a file that was cut or written to since it was opened ends the body
+// early: never padding, never bytes of another version. (sendfile only lends pages to the socket: what is cut
+// off or overwritten before they have left goes to the client as zeros, or as the new bytes, in an answer
+// that looks complete. A mapped file would be SIGBUS.) A client that is behind keeps no buffer, unless it is
+// through TLS: what it has not taken is read again.
 class ResponseSender {
   public:
     static constexpr std::size_t stepBytes = 1024 * 1024; // 150 µs or so
@@ -59,7 +61,7 @@ class ResponseSender {
     bool fill();
     bool fillFrom(const FileSlice& slice);
     bool flush();
-    bool sendFile();
+    void forgetUnsent();
     void nextPart();
     bool isAtEnd() const { return part_ == partCount_; }
     Step end(bool isComplete);
@@ -76,7 +78,11 @@ class ResponseSender {
     std::size_t begin_ = 0, end_ = 0; // of the buffer: waiting to be sent
     std::size_t headBytes_ = 0;       // of those, that belong to the head
     std::size_t inStep_ = 0;
-    const OpenFile* sentFrom_ = nullptr; // by sendfile: to be looked at once more at the end
+    struct Tail { // the end of the buffer
+        bool isOfFile = false;
+        std::size_t begin = 0, part = 0; // where it begins in the buffer; which part it is of
+        std::uint64_t partBytes = 0;     // and from where on
+    } tail_;
     Wait wait_ = Wait::nothing;
     SendOutcome outcome_;
 };

@@ -3,9 +3,8 @@
 // Threads: one event loop a thread; a connection stays on its loop, so nothing of it is locked. The calls
 // here may come from any thread.
 //
-// Memory of a connection: its request header (at most 16 KiB) and, while a part of a file is sent, 64 KiB
-// from its loop's pool; the rest of a large range goes from file to socket without being copied (sendfile).
-// Nothing grows with a file's size.
+// Memory of a connection: its request header (at most 16 KiB), and 68 KiB from its loop's pool while it
+// sends, through TLS also while its client is behind. Nothing grows with a file's size.
 //
 // The process ignores SIGPIPE from the first server on: a client that leaves must not end the program.
 #pragma once
@@ -37,6 +36,7 @@ struct ServerLimits {
     static constexpr std::size_t progressBytes = 256 * 1024;
     std::chrono::milliseconds sweep{250}; // how often the limits are looked at
     JobLimits jobs;
+};
 };
 
 // Who may read /metrics, which names every cloud that was asked for, private ones, too.

@@ -6,7 +6,6 @@
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <poll.h>
-#include <sys/sendfile.h>
 #include <sys/socket.h>
 
 namespace stipple::server {
@@ -109,13 +108,6 @@ Moved Stream::write(std::string_view bytes) {
     std::size_t count = 0;
     int result = SSL_write_ex(session_, bytes.data(), bytes.size(), &count);
     return result == 1 ? Moved{count, Wait::nothing} : Moved{0, waitAfter(result)};
-}
-
-Moved Stream::sendFile(int descriptor, std::uint64_t offset, std::size_t size) {
-    if (!socket_.is_open())
-        return {0, Wait::never};
-    off_t at = static_cast<off_t>(offset);
-    return movedOr(::sendfile(socket_.native_handle(), descriptor, &at, size), Wait::writable);
 }
 
 Task<bool> Stream::wait(Wait what) {

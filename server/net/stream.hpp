@@ -41,9 +41,9 @@ class Stream {
     Task<std::size_t> readSome(char* to, std::size_t size);
 
     Moved write(std::string_view bytes);
-    bool canSendFile() const { return session_ == nullptr; }
-    // From the file to the socket without a copy here. `never` also when the file ends before `offset`.
-    Moved sendFile(int descriptor, std::uint64_t offset, std::size_t size);
+    // Whether a write that could not go on may be followed by one from another place. (TLS has coded its
+    // bytes already.)
+    bool mayWriteAnew() const { return session_ == nullptr; }
     Task<bool> wait(Wait what);
     Task<bool> writeAll(std::string_view bytes);
 

@@ -77,6 +77,29 @@ TEST_CASE("a file that is cut under a download ends it short, with no padding") 
     CHECK_FALSE(log[0].isComplete);
 }
 
+TEST_CASE("what has left already of a file that is then cut or overwritten is the old file's bytes") {
+    for (bool isCut : {true, false}) {
+        TestServer server;
+        RawClient client(server.port());
+        client.setReceiveBuffer(65536);
+        client.send("GET /pattern.bin HTTP/1.1\r\nHost: a\r\n\r\n");
+        while (server.server().openConnections() < 1)
+            std::this_thread::yield();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        fs::path file = server.folder().page() / "pattern.bin";
+        if (isCut)
+            fs::resize_file(file, 100'001);
+        else
+            std::fstream(file, std::ios::in | std::ios::out).write(std::string(300'000, 'x').data(), 300'000);
+        auto response = client.receive();
+        REQUIRE(response.body.size() > 100'001);
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < response.body.size(); ++i)
+            wrong += response.body[i] != patternByte(i);
+        CHECK(wrong == 0);
+    }
+}
+
 TEST_CASE("a file that is written to under a download ends it short") {
     TestServer server;
     RawClient client(server.port());
