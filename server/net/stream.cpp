@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <limits>
+#include <netinet/tcp.h>
 #include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <poll.h>
@@ -12,6 +13,10 @@ namespace stipple::server {
 
 namespace {
 
+// Bytes that wait in the kernel for a client that is behind, beside those that are under way to it. Without
+// this limit it is what tcp_wmem allows, 4 MiB, and a thousand clients that don't read exhaust the memory for
+// TCP of all.
+constexpr int mostUnsentBytes = 256 * 1024;
 constexpr unsigned char tlsHandshakeRecord = 0x16; // RFC 8446 §5.1
 
 Moved movedOr(ssize_t moved, Wait whenFull) {
@@ -30,6 +35,8 @@ Stream::Stream(Socket socket, std::shared_ptr<const TlsContext> tls)
     : socket_(std::move(socket)), tls_(std::move(tls)) {
     Failure ignored;
     socket_.set_option(Tcp::no_delay(true), ignored);
+    socket_.set_option(net::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>(mostUnsentBytes),
+                       ignored);
     socket_.native_non_blocking(true, ignored);
     socket_.non_blocking(true, ignored);
 }
