@@ -25,6 +25,9 @@ class RequestHandler {
     // Who sent the request, for the log; empty: nobody in particular.
     virtual std::string userOf(const HttpRequest&) const { return {}; }
 
+    // The system has no descriptors left for clients: closes files that can be opened again.
+    virtual void spareDescriptors() const {}
+
     // What /metrics shows beside the server's own: caches, and the like.
     virtual std::vector<Measurement> measurements() const { return {}; }
 };

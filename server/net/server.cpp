@@ -159,10 +159,13 @@ class BeastServer final : public Server {
             auto [error, socket] = co_await acceptor_->async_accept(loop.context(), answered);
             if (!error)
                 next = (next + 1) % loops_.size();
-            if (!error)
+            if (!error) {
                 dealOut(loop, std::move(socket));
-            else if (error != net::error::operation_aborted && error != net::error::connection_aborted)
+            } else if (error != net::error::operation_aborted && error != net::error::connection_aborted) {
+                if (error == net::error::no_descriptors)
+                    state_.handler->spareDescriptors();
                 co_await pause();
+            }
         }
     }
 

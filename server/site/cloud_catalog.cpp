@@ -109,7 +109,7 @@ Result<VersionPtr> CloudCatalog::current(std::string_view id) const {
 Result<VersionPtr> CloudCatalog::openFile(const std::string& id, const std::string& path) const {
     auto file = OpenFile::open(path);
     if (!file && file.error().code == ErrorCode::limitExceeded) { // of descriptors, these can be spared
-        versions_.shrinkTo(versions_.size() / 2);
+        closeHalf();
         file = OpenFile::open(path);
     }
     if (!file)

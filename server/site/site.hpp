@@ -35,6 +35,7 @@ class Site final : public RequestHandler {
 
     Answer answer(const HttpRequest& request, std::int64_t nowSeconds) const override;
     void complete(const HttpRequest& request, HttpResponse& response) const override;
+    void spareDescriptors() const override { catalog_->closeHalf(); }
     std::vector<Measurement> measurements() const override; // clouds, caches, and which version this is
     std::string userOf(const HttpRequest& request) const override; // the name of its token
     const CloudCatalog& catalog() const { return *catalog_; }
