@@ -1,6 +1,6 @@
 // Makes a cloud's file larger, for measuring servers on files that no conversion has to be waited for:
 // appends pseudo-random bytes, which no node refers to, and corrects the header.
-//   pad_cloud CLOUD.stipple BYTES
+//   pad_cloud CLOUD.stipple BYTES [SEED]
 #include "shared/format/file_parts.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 using namespace stipple;
 
 int main(int count, char** arguments) {
-    if (count != 3) {
-        std::fprintf(stderr, "usage: pad_cloud CLOUD.stipple BYTES\n");
+    if (count != 3 && count != 4) {
+        std::fprintf(stderr, "usage: pad_cloud CLOUD.stipple BYTES [SEED]\n");
         return 2;
     }
     std::fstream file(arguments[1], std::ios::in | std::ios::out | std::ios::binary);
@@ -26,7 +26,7 @@ int main(int count, char** arguments) {
         return 3;
     }
     std::uint64_t wanted = std::strtoull(arguments[2], nullptr, 10);
-    std::mt19937_64 random(1);
+    std::mt19937_64 random(count == 4 ? std::strtoull(arguments[3], nullptr, 10) : 1);
     std::vector<std::uint64_t> noise(1 << 17);
     for (file.seekp(0, std::ios::end); header->fileBytes < wanted && file;) {
         for (std::uint64_t& word : noise)
