@@ -1,6 +1,7 @@
 #include "client/headless/http_source.hpp"
 
 #include "client/headless/http_url.hpp"
+#include "client/headless/tls_trust.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 #include "shared/io/range_answer.hpp"
@@ -12,6 +13,8 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -19,6 +22,7 @@
 #include <boost/beast/http.hpp>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace stipple {
@@ -46,9 +50,12 @@ struct Job {
 };
 using JobPtr = std::shared_ptr<Job>;
 
+using TlsStream = net::ssl::stream<beast::tcp_stream&>; // borrows the stream below it
+
 struct Connection {
     explicit Connection(net::io_context& context) : stream(context), wake(context) {}
     beast::tcp_stream stream;
+    std::optional<TlsStream> tls; // https: one for each time it is opened
     beast::flat_buffer buffer{readBufferBytes};
     net::steady_timer wake; // expires never; cancelled to wake an idle connection
     bool isOpen = false;
@@ -58,7 +65,7 @@ struct Connection {
 // How an attempt ended; `stale`: a kept-alive connection was closed before a byte of the answer came, so the
 // request (a GET) may be sent again on a new one (RFC 9112 §9.3.1).
 struct Attempt {
-    Result<Bytes> result;
+    Result<Bytes> result = Bytes();
     bool stale = false;
 };
 
@@ -70,7 +77,7 @@ std::string field(const http::fields& fields, http::field name) {
 class HttpSource final : public ByteSource {
   public:
     HttpSource(HttpUrl url, std::string name, const HttpSourceOptions& options)
-        : url_(std::move(url)), name_(std::move(name)), options_(options) {}
+        : url_(std::move(url)), name_(std::move(name)), options_(options), version_(options.version) {}
 
     ~HttpSource() override {
         *alive_ = false;
@@ -182,7 +189,11 @@ class HttpSource final : public ByteSource {
         }
         // Whatever goes wrong from here on, the connection is in an unknown state; only success keeps it.
         connection.isOpen = false;
-        Attempt attempt = co_await exchange(connection, job);
+        Attempt attempt;
+        if (connection.tls)
+            attempt = co_await exchange(connection, *connection.tls, job);
+        else
+            attempt = co_await exchange(connection, connection.stream, job);
         if (!connection.isOpen)
             closeNow(connection);
         co_return attempt;
@@ -199,28 +210,61 @@ class HttpSource final : public ByteSource {
         }
         connection.stream.expires_after(options_.connectTimeout);
         auto [error, endpoint] = co_await connection.stream.async_connect(endpoints_, answered);
-        if (error)
+        if (error == beast::error::timeout)
+            co_return timeoutError();
+        if (error) {
+            endpoints_ = {}; // the name may lead elsewhere by now
             co_return networkError(cat("can't connect: ", error.message()),
                                    "check the address, and that the server runs");
+        }
         Failure ignored;
         connection.stream.socket().set_option(Tcp::no_delay(true), ignored);
+        if (url_.isSecure) {
+            Status agreed = co_await shakeHands(connection);
+            if (!agreed)
+                co_return agreed;
+        }
         connection.isOpen = true;
         co_return Status();
     }
 
+    // Within connectTimeout, too.
+    net::awaitable<Status> shakeHands(Connection& connection) {
+        connection.tls.emplace(connection.stream, options_.trust->context());
+        Failure notAnAddress, problem;
+        net::ip::make_address(url_.host, notAnAddress);
+        if (notAnAddress) // SNI is for names (RFC 6066 §3)
+            SSL_set_tlsext_host_name(connection.tls->native_handle(), url_.host.c_str());
+        connection.tls->set_verify_callback(net::ssl::host_name_verification(url_.host), problem);
+        if (problem)
+            co_return networkError(cat("TLS can't be set up: ", problem.message()));
+        auto [error] = co_await connection.tls->async_handshake(net::ssl::stream_base::client, answered);
+        if (!error)
+            co_return Status();
+        long verdict = SSL_get_verify_result(connection.tls->native_handle());
+        if (verdict != X509_V_OK)
+            co_return networkError(
+                cat("the server's certificate is not trusted: ", X509_verify_cert_error_string(verdict)),
+                "check the address; certificates beside the system's come by SSL_CERT_FILE or an option");
+        if (error == beast::error::timeout)
+            co_return timeoutError();
+        co_return networkError(cat("TLS can't be agreed on: ", error.message()),
+                               "check that the address is https");
+    }
+
     // Sends the request and reads its answer; sets `isOpen` if the connection can be used again.
-    net::awaitable<Attempt> exchange(Connection& connection, const Job& job) {
+    template <class ByteStream>
+    net::awaitable<Attempt> exchange(Connection& connection, ByteStream& stream, const Job& job) {
         http::request<http::empty_body> request = makeRequest(job.range);
         connection.stream.expires_after(options_.headerTimeout);
-        if (auto [error, sent] = co_await http::async_write(connection.stream, request, answered); error)
-            co_return Attempt{networkError(cat("the connection broke: ", error.message())), true};
+        if (auto [error, sent] = co_await http::async_write(stream, request, answered); error)
+            co_return Attempt{readError(error), error != beast::error::timeout};
 
         http::response_parser<http::vector_body<std::uint8_t>> parser;
         parser.body_limit(boost::none); // judged below, before any of it is stored
         // Counted here, because Beast bounds a single line of a header, not all of it.
         for (std::size_t headerBytes = 0; !parser.is_header_done();) {
-            auto [error, got] =
-                co_await http::async_read_some(connection.stream, connection.buffer, parser, answered);
+            auto [error, got] = co_await http::async_read_some(stream, connection.buffer, parser, answered);
             headerBytes += got;
             if (error)
                 co_return Attempt{readError(error), !parser.got_some() && error != beast::error::timeout};
@@ -228,9 +272,12 @@ class HttpSource final : public ByteSource {
                 co_return Attempt{networkError("the header of the answer has no end")};
         }
 
+        bool wasPinned = version_.pinned;
         auto expected = judgeRangeAnswer(job.range, summary(parser), version_, name_);
         if (!expected)
             co_return Attempt{expected.error()};
+        if (!wasPinned && options_.onVersion)
+            options_.onVersion(version_);
         std::uint64_t bodyBytes = *expected;
         if (auto coding = field(parser.get(), http::field::content_encoding);
             !coding.empty() && coding != "identity")
@@ -246,8 +293,7 @@ class HttpSource final : public ByteSource {
             if (job.cancelled && left > drainBytes)
                 co_return Attempt{cancelledError()};
             connection.stream.expires_after(options_.noProgressTimeout);
-            auto [error, got] =
-                co_await http::async_read_some(connection.stream, connection.buffer, parser, answered);
+            auto [error, got] = co_await http::async_read_some(stream, connection.buffer, parser, answered);
             if (error)
                 co_return Attempt{readError(error)};
         }
@@ -285,6 +331,7 @@ class HttpSource final : public ByteSource {
 
     static void closeNow(Connection& connection) {
         Failure ignored;
+        connection.tls.reset();
         connection.stream.socket().close(ignored);
         connection.buffer.consume(connection.buffer.size());
         connection.isOpen = false;
@@ -295,11 +342,13 @@ class HttpSource final : public ByteSource {
     }
     Error readError(const Failure& error) const {
         if (error == beast::error::timeout)
-            return networkError("the server stopped answering", "try again");
-        if (error == http::error::end_of_stream || error == http::error::partial_message)
+            return timeoutError();
+        if (error == http::error::end_of_stream || error == http::error::partial_message ||
+            error == net::ssl::error::stream_truncated)
             return networkError("the server closed the connection in the middle of its answer", "try again");
-        return networkError(cat("the answer can't be read: ", error.message()));
+        return networkError(cat("the connection broke: ", error.message()));
     }
+    Error timeoutError() const { return noAnswerInTime(name_); }
 
     // Declared first, destroyed last: it owns the coroutines, which refer to all that follows but do not
     // touch it when they are destroyed.
@@ -321,7 +370,12 @@ class HttpSource final : public ByteSource {
 
 Result<std::unique_ptr<ByteSource>> openHttpSource(const std::string& url, const HttpSourceOptions& options) {
     STIPPLE_TRY(parts, parseHttpUrl(url));
-    return std::unique_ptr<ByteSource>(new HttpSource(std::move(parts), url, options));
+    HttpSourceOptions chosen = options;
+    if (parts.isSecure && !chosen.trust) {
+        STIPPLE_TRY(trust, TlsTrust::load());
+        chosen.trust = trust;
+    }
+    return std::unique_ptr<ByteSource>(new HttpSource(std::move(parts), url, chosen));
 }
 
 Result<std::unique_ptr<ByteSource>> openSource(const std::string& pathOrUrl) {

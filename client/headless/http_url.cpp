@@ -36,9 +36,9 @@ Result<HttpUrl> parseHttpUrl(std::string_view url) {
     std::string scheme(url.substr(0, url.find("://")));
     std::transform(scheme.begin(), scheme.end(), scheme.begin(),
                    [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-    if (scheme != "http")
+    if (scheme != "http" && scheme != "https")
         return Error{ErrorCode::unsupported, cat("the scheme \"", scheme, "\" is not supported"),
-                     std::string(url), "use http, or download the file"};
+                     std::string(url), "use http or https, or download the file"};
     // Control bytes and spaces would end the request line or a field early.
     if (std::any_of(url.begin(), url.end(),
                     [](char c) { return static_cast<unsigned char>(c) <= ' ' || c == 127; }))
@@ -69,8 +69,9 @@ Result<HttpUrl> parseHttpUrl(std::string_view url) {
     if (!afterHost.empty() && (afterHost.front() != ':' || !isPort(afterHost.substr(1))))
         return badUrl(url, "has a port that is not 1 to 65535");
 
+    parts.isSecure = scheme == "https";
     parts.host = host;
-    parts.port = afterHost.empty() ? "80" : std::string(afterHost.substr(1));
+    parts.port = afterHost.empty() ? (parts.isSecure ? "443" : "80") : std::string(afterHost.substr(1));
     parts.authority = authority;
     parts.target = target.empty() || target.front() != '/' ? cat("/", target) : std::string(target);
     return parts;

@@ -9,6 +9,7 @@
 namespace stipple {
 namespace {
 
+constexpr const char* timeoutText = "the server did not answer in time";
 constexpr const char* reloadAdvice = "open it again";
 constexpr const char* rangeAdvice =
     "serve the file with `stipple serve`, or with any server that answers byte ranges";
@@ -151,6 +152,14 @@ Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answe
         return Error{ErrorCode::networkFailed, cat("the server answered with status ", answer.status), where,
                      "try again later"};
     }
+}
+
+Error noAnswerInTime(const std::string& where) {
+    return {ErrorCode::networkFailed, timeoutText, where, "try again"};
+}
+
+bool isTimeout(const Error& error) {
+    return error.code == ErrorCode::networkFailed && error.what == timeoutText;
 }
 
 } // namespace stipple

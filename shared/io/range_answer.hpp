@@ -44,4 +44,8 @@ std::string rangeField(ByteRange range); // "bytes=0-65535"
 Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answer, FileVersion& version,
                                        const std::string& where);
 
+// The error of a source whose server was too slow, and how to tell it from other failures of a network.
+Error noAnswerInTime(const std::string& where);
+bool isTimeout(const Error& error);
+
 } // namespace stipple
