@@ -15,8 +15,10 @@
 
 namespace stipple::server {
 
-// Where a job puts its answer: either answer(), or begin() and then any number of write()s. Thread: the
-// job's.
+struct Job;
+
+// Where a job puts its answer: either answer(), or begin() and then any number of write()s, or another job
+// by handOver(). Thread: the job's.
 class AnswerWriter {
   public:
     virtual ~AnswerWriter() = default;
@@ -25,7 +27,8 @@ class AnswerWriter {
     virtual void answer(HttpResponse response) = 0;
 
     // Status and fields of an answer whose length is not known yet (chunked transfer coding; HTTP/1.0: until
-    // the connection closes). Its body is empty.
+    // the connection closes). Its body is empty, or tells the length after all: parts of no file (FileSlice),
+    // whose bytes are then written.
     virtual Status begin(HttpResponse head) = 0;
     // More of the body. Waits while the client is behind, so a job never holds more than it is making.
     // `cancelled` once the client has left or the job's time is over: the job ends then.
@@ -33,6 +36,9 @@ class AnswerWriter {
 
     // True from then on; for work that goes on for long between two writes.
     virtual const std::atomic<bool>& isStopped() const = 0;
+
+    // Another job answers, in its own turn, once this one has ended; nothing may have been answered yet.
+    virtual void handOver(Job next) = 0;
 };
 
 struct Job {
@@ -43,6 +49,9 @@ struct Job {
     std::function<Status(AnswerWriter&)> run;
     // How often a client may have such an answer; null: as often as it likes. Beyond it: 429.
     std::shared_ptr<ClientRate> rate = nullptr;
+    // It waits for another server and computes next to nothing: not among those that compute, and with
+    // limits of its own.
+    bool isTransfer = false;
 };
 
 using Answer = std::variant<HttpResponse, Job>;

@@ -44,6 +44,7 @@ class KeptRequest {
 };
 
 // A piece of a file, kept open until it is sent. Invariant: offset + size <= file->identity().sizeBytes.
+// Without a file, its bytes are elsewhere: a job writes them (AnswerWriter::begin).
 struct FileSlice {
     std::shared_ptr<const OpenFile> file;
     std::uint64_t offset = 0, size = 0;

@@ -1,6 +1,7 @@
 #include "server/http/problem.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/io/range_answer.hpp"
 
 #include <algorithm>
 #include <array>
@@ -158,8 +159,12 @@ HttpResponse jobProblem(const Error& error) {
         return problemResponse({workTooLarge, error.what});
     case ErrorCode::cancelled:
         return problemResponse({outOfTime, "the answer took longer than the server gives to one request"});
-    case ErrorCode::networkFailed:
-        return problemResponse({upstreamFailed, error.what});
+    case ErrorCode::networkFailed: {
+        HttpResponse response =
+            problemResponse({isTimeout(error) ? upstreamTimedOut : upstreamFailed, error.what});
+        response.set("Retry-After", "5");
+        return response;
+    }
     case ErrorCode::changed: {
         HttpResponse response =
             problemResponse({cloudChanged, "the cloud was replaced meanwhile; ask again"});

@@ -13,6 +13,8 @@ namespace {
 BodyPart sliceOf(const Representation& representation, ByteRange range) {
     if (const auto* file = std::get_if<std::shared_ptr<const OpenFile>>(&representation.content))
         return FileSlice{*file, range.offset, range.size};
+    if (std::holds_alternative<Representation::Elsewhere>(representation.content))
+        return FileSlice{nullptr, range.offset, range.size};
     const auto& text = std::get<std::string>(representation.content);
     return text.substr(static_cast<std::size_t>(range.offset), static_cast<std::size_t>(range.size));
 }
@@ -64,6 +66,8 @@ Representation Representation::ofFile(std::shared_ptr<const OpenFile> file, std:
 }
 
 std::uint64_t Representation::sizeBytes() const {
+    if (const auto* elsewhere = std::get_if<Elsewhere>(&content))
+        return elsewhere->sizeBytes;
     const auto* file = std::get_if<std::shared_ptr<const OpenFile>>(&content);
     return file ? (*file)->identity().sizeBytes : std::get<std::string>(content).size();
 }

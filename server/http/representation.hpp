@@ -14,7 +14,10 @@
 namespace stipple::server {
 
 struct Representation {
-    std::variant<std::string, std::shared_ptr<const OpenFile>> content;
+    struct Elsewhere { // its slices have no file
+        std::uint64_t sizeBytes = 0;
+    };
+    std::variant<std::string, std::shared_ptr<const OpenFile>, Elsewhere> content;
     std::string contentType;
     std::string cacheControl;
     Validators validators;

@@ -66,6 +66,12 @@ Status JobRun::begin(HttpResponse head) {
     return cancelledError();
 }
 
+void JobRun::handOver(Job next) {
+    std::lock_guard lock(mutex_);
+    if (!isAnswered_)
+        next_ = std::move(next);
+}
+
 Status JobRun::write(ByteSpan bytes) {
     while (!bytes.empty()) {
         std::unique_lock lock(mutex_);
@@ -137,6 +143,8 @@ JobNews JobRun::take(std::string& body, std::size_t least) {
     if (isEnded_) {
         news.isOver = true;
         news.failure = failure_;
+        news.next = std::move(next_);
+        next_.reset();
     }
     wantsNews_ = !news.head && body.empty() && !news.isOver;
     return news;

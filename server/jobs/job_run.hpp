@@ -20,6 +20,7 @@ struct JobNews {
     bool isWhole = false;             // with `head`: the whole answer, with its body; nothing follows
     bool isOver = false;              // the job has ended, and all its bytes have been taken
     std::optional<Error> failure;     // with `isOver`
+    std::optional<Job> next;          // with `isOver`: answers instead
 };
 
 class JobRun final : public AnswerWriter {
@@ -41,12 +42,14 @@ class JobRun final : public AnswerWriter {
     Status begin(HttpResponse head) override;
     Status write(ByteSpan bytes) override;
     const std::atomic<bool>& isStopped() const override { return stopped_; }
+    void handOver(Job next) override;
 
     // ---- Any thread.
     void stop(); // nobody takes the answer any more
     // Time that the job has worked; what it waited for its client is not counted. Nothing before run().
     std::optional<std::chrono::milliseconds> worked(Clock::time_point now) const;
     const std::string& kind() const { return job_.kind; }
+    bool isTransfer() const { return job_.isTransfer; }
 
     // ---- The connection's thread. The bytes of the body that are there go to `body`, whose old content is
     // dropped and whose memory is used again. Fewer than `least` are left there, unless they are the first or
@@ -69,6 +72,7 @@ class JobRun final : public AnswerWriter {
     bool isAnswered_ = false, isWhole_ = false, isEnded_ = false;
     bool wantsNews_ = false, hasWritten_ = false, hasTaken_ = false;
     std::optional<Error> failure_;
+    std::optional<Job> next_;
     std::string pending_; // at most waitingBytes
     std::optional<Clock::time_point> began_, waitsSince_;
     Clock::duration waited_{};

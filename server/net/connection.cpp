@@ -201,9 +201,9 @@ Task<void> Connection::answerJob(Job job) {
     }
     const auto& head = std::get<HttpResponse>(answer_);
     exchange_.status = head.status;
-    BodyFraming framing = exchange_.request.version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
+    BodyFraming framing = jobAnswer.framing(head, exchange_.request.version);
     exchange_.keepsAlive =
-        exchange_.keepsAlive && framing == BodyFraming::chunked && !head.closes && !loop_.state().isEnding;
+        exchange_.keepsAlive && framing != BodyFraming::untilClose && !head.closes && !loop_.state().isEnding;
     head_.clear();
     appendResponseHead(head_, head, std::time(nullptr), exchange_.keepsAlive, framing);
     if (headOnly)
@@ -211,6 +211,9 @@ Task<void> Connection::answerJob(Job job) {
     else
         exchange_.outcome =
             co_await jobAnswer.sendBody(head_, framing, [this] { allow(limits_.noProgress); });
+    // A body that is not as long as was announced: the client must not take the next answer for its rest.
+    if (framing == BodyFraming::length && !headOnly && exchange_.outcome.bodyBytes != head.bodyBytes())
+        exchange_.outcome.isComplete = false;
 }
 
 bool Connection::endExchange() {

@@ -26,11 +26,22 @@ HttpResponse serverIsBusy() {
 
 JobAnswer::JobAnswer(Loop& loop, Stream& stream, std::string client, Job job, bool headOnly)
     : loop_(loop), stream_(stream), client_(std::move(client)),
-      wake_(std::make_shared<Timer>(loop.context())), rate_(job.rate), headOnly_(headOnly) {
-    auto onNews = [wake = wake_, &context = loop.context()] {
+      wake_(std::make_shared<Timer>(loop.context())), headOnly_(headOnly) {
+    prepare(std::move(job));
+}
+
+void JobAnswer::prepare(Job job) {
+    rate_ = job.rate;
+    auto onNews = [wake = wake_, &context = loop_.context()] {
         net::post(context, [wake] { wake->cancel(); });
     };
-    run_ = std::make_shared<JobRun>(std::move(job), headOnly, std::move(onNews));
+    run_ = std::make_shared<JobRun>(std::move(job), headOnly_, std::move(onNews));
+}
+
+BodyFraming JobAnswer::framing(const HttpResponse& head, int version) const {
+    if (!head.body.empty())
+        return BodyFraming::length;
+    return version == 11 ? BodyFraming::chunked : BodyFraming::untilClose;
 }
 
 JobAnswer::~JobAnswer() {
@@ -39,7 +50,7 @@ JobAnswer::~JobAnswer() {
     if (news_.isWhole || (isStreamed_ && headOnly_))
         run_->stop(); // all is said; it is about to end
     else
-        loop_.state().jobs.withdraw(run_);
+        pool().withdraw(run_);
 }
 
 std::optional<HttpResponse> JobAnswer::rateRefusal() const {
@@ -55,25 +66,39 @@ std::optional<HttpResponse> JobAnswer::rateRefusal() const {
 
 std::optional<HttpResponse> JobAnswer::refusal(JobPool::Admission admission) const {
     if (admission == JobPool::Admission::clientIsBusy)
-        return retryLater(problemResponse({problem_types::tooManyRequests,
-                                           cat("no more than ", loop_.state().jobs.limits().perClient,
-                                               " such requests at once")}),
-                          "1");
+        return retryLater(
+            problemResponse({problem_types::tooManyRequests,
+                             cat("no more than ", pool().limits().perClient, " such requests at once")}),
+            "1");
     if (admission == JobPool::Admission::isFull)
         return serverIsBusy();
     return std::nullopt;
 }
 
-Task<std::optional<HttpResponse>> JobAnswer::wait() {
+// Of the run that is next; a refusal if it can't be.
+std::optional<HttpResponse> JobAnswer::submit() {
     if (auto tooOften = rateRefusal())
-        co_return tooOften;
+        return tooOften;
     submitted_ = std::chrono::steady_clock::now();
-    auto refused = refusal(loop_.state().jobs.submit(client_, run_));
+    news_ = {};
+    auto admission = pool().submit(client_, run_);
+    isSubmitted_ = admission == JobPool::Admission::accepted;
+    return refusal(admission);
+}
+
+Task<std::optional<HttpResponse>> JobAnswer::wait() {
+    auto refused = submit();
     if (refused)
         co_return refused;
-    isSubmitted_ = true;
     for (;;) {
         co_await nextNews();
+        if (news_.next) {
+            prepare(std::move(*news_.next));
+            refused = submit();
+            if (refused)
+                co_return refused;
+            continue;
+        }
         if (news_.head) {
             isStreamed_ = !news_.isWhole;
             co_return std::move(news_.head);
@@ -91,7 +116,7 @@ Task<std::optional<HttpResponse>> JobAnswer::wait() {
 // Of waiting for its turn, or of working.
 bool JobAnswer::isOverTime() const {
     auto now = std::chrono::steady_clock::now();
-    const JobLimits& limits = loop_.state().jobs.limits();
+    const JobLimits& limits = pool().limits();
     auto worked = run_->worked(now);
     return worked ? *worked >= limits.work : now - submitted_ >= limits.queue;
 }
@@ -99,7 +124,7 @@ bool JobAnswer::isOverTime() const {
 HttpResponse JobAnswer::overTimeProblem() const {
     if (!run_->worked(std::chrono::steady_clock::now()))
         return serverIsBusy();
-    auto seconds = std::chrono::duration<double>(loop_.state().jobs.limits().work).count();
+    auto seconds = std::chrono::duration<double>(pool().limits().work).count();
     return problemResponse({problem_types::outOfTime, cat("this takes longer than ", seconds, " seconds")});
 }
 

@@ -32,14 +32,20 @@ class JobAnswer {
     // Whether what wait() gave is a head only, and sendBody() has to follow.
     bool isStreamed() const { return isStreamed_; }
 
+    // How the body's end is told to a client of this version of HTTP.
+    BodyFraming framing(const HttpResponse& head, int version) const;
+
     // Sends `head` and the body as the job makes it; only for what is no answer to a HEAD. Not complete if
     // the job failed or was stopped: the connection must be cut then.
     Task<SendOutcome> sendBody(std::string_view head, BodyFraming framing, std::function<void()> onProgress);
 
   private:
+    void prepare(Job job);
+    JobPool& pool() const { return loop_.state().poolOf(*run_); }
     Task<void> nextNews();
     void appendPiece(std::string_view piece, bool isLast);
     std::optional<HttpResponse> rateRefusal() const;
+    std::optional<HttpResponse> submit();
     std::optional<HttpResponse> refusal(JobPool::Admission admission) const;
     bool isOverTime() const;
     HttpResponse overTimeProblem() const;

@@ -20,12 +20,14 @@ namespace stipple::server {
 
 // What all loops share.
 struct ServerState {
-    explicit ServerState(const ServerLimits& chosen) : limits(chosen), jobs(chosen.jobs) {}
+    explicit ServerState(const ServerLimits& chosen)
+        : limits(chosen), jobs(chosen.jobs), transfers(chosen.transfers) {}
 
     ServerLimits limits;
     std::shared_ptr<const RequestHandler> handler;
     RequestLog log;
-    JobPool jobs;
+    JobPool jobs, transfers;
+    JobPool& poolOf(const JobRun& run) { return run.isTransfer() ? transfers : jobs; }
     // Of connections to come; null: plain.
     std::shared_ptr<const TlsContext> tls() {
         std::lock_guard lock(tlsMutex);

@@ -36,7 +36,7 @@ bool mayReadMetrics(const HttpRequest& request, const ServerState& state, const 
 }
 
 std::vector<Measurement> measurements(ServerState& state) {
-    JobCounts jobs = state.jobs.counts();
+    JobCounts jobs = state.jobs.counts(), transfers = state.transfers.counts();
     auto gauge = [](const char* name, const char* help, double value) {
         return Measurement{name, help, false, value};
     };
@@ -53,7 +53,10 @@ std::vector<Measurement> measurements(ServerState& state) {
         counter("stipple_jobs_accepted_total", "Jobs that were accepted", jobs.accepted),
         counter("stipple_jobs_refused_total", "Jobs beyond a limit", jobs.refused),
         counter("stipple_jobs_cancelled_total", "Jobs whose client left, or whose time was over",
-                jobs.cancelled)};
+                jobs.cancelled),
+        gauge("stipple_transfers_running", "Answers that are made of another server's", transfers.running),
+        gauge("stipple_transfers_queued", "Of those, that wait for their turn", transfers.queued),
+        counter("stipple_transfers_refused_total", "Of those, beyond a limit", transfers.refused)};
     for (Measurement& more : state.handler->measurements())
         all.push_back(std::move(more));
     for (Measurement& more : processMeasurements())

@@ -65,6 +65,7 @@ class BeastServer final : public Server {
         for (auto& loop : loops_)
             loop->join();
         state_.jobs.end(); // before the loops that jobs report to
+        state_.transfers.end();
     }
 
     Status trust(const std::vector<std::string>& proxies) {

@@ -36,7 +36,9 @@ struct ServerLimits {
     static constexpr std::size_t progressBytes = 256 * 1024;
     std::chrono::milliseconds sweep{250}; // how often the limits are looked at
     JobLimits jobs;
-};
+    // Of jobs that wait for another server (Job::isTransfer): each holds a thread, but no core. How long they
+    // take is limited by that server's and the client's own limits.
+    JobLimits transfers{32, 1024, 256, std::chrono::hours(24), std::chrono::milliseconds(30'000)};
 };
 
 // Who may read /metrics, which names every cloud that was asked for, private ones, too.

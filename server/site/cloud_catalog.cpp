@@ -1,5 +1,7 @@
 #include "server/site/cloud_catalog.hpp"
 
+#include "client/headless/http_url.hpp"
+#include "server/upstream/upstream_cloud.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
@@ -16,12 +18,21 @@ using VersionPtr = std::shared_ptr<const CloudVersion>;
 constexpr const char* fileSuffix = ".stipple";
 constexpr const char* convertAdvice = "make one with `stipple convert SCAN -o NAME.stipple`";
 
-std::string idOf(const std::string& path) {
-    std::string id = fs::path(path).stem().string();
+std::string idOf(const std::string& name) {
+    std::string id = fs::path(name).stem().string();
     for (char& c : id)
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-')
             c = '-';
     return id;
+}
+
+// "town.stipple" of "https://host/clouds/town.stipple?signature=…".
+std::string nameOf(const std::string& url) {
+    std::string path = url.substr(0, url.find_first_of("?#"));
+    path.erase(0, path.find("://") + 3);
+    std::size_t slash = path.find_last_of('/');
+    bool isNamed = slash != std::string::npos && slash + 1 < path.size();
+    return isNamed ? path.substr(slash + 1) : cat(path.substr(0, slash), fileSuffix);
 }
 
 bool isOf(const VersionPtr& version, const FileIdentity& identity) {
@@ -36,10 +47,15 @@ CloudSummary summaryOf(const CloudVersion& version) {
 }
 
 Result<CloudCatalog::Opened> CloudCatalog::open(const std::vector<std::string>& paths,
-                                                const VersionCache::Limits& limits) {
+                                                const VersionCache::Limits& limits,
+                                                const UpstreamOptions& upstream) {
     Opened opened{std::unique_ptr<CloudCatalog>(new CloudCatalog(limits)), {}};
     CloudCatalog& catalog = *opened.catalog;
     for (const std::string& path : paths) {
+        if (looksLikeUrl(path)) {
+            STIPPLE_CHECK(catalog.addUpstream(path, upstream));
+            continue;
+        }
         std::error_code problem;
         if (!fs::exists(path, problem))
             return Error{ErrorCode::notFound, "there is no such file or folder", path, ""};
@@ -47,7 +63,7 @@ Result<CloudCatalog::Opened> CloudCatalog::open(const std::vector<std::string>& 
             catalog.folders_.push_back({FolderListing(path, fileSuffix), {}});
             continue;
         }
-        std::string id = catalog.add(path);
+        std::string id = catalog.add({path, nullptr}, path);
         if (auto version = catalog.openFile(id, path); !version) {
             opened.warnings.push_back(version.error());
             catalog.remove(id);
@@ -83,15 +99,45 @@ std::vector<std::string> CloudCatalog::idsAfter(std::string_view after, std::siz
 }
 
 bool CloudCatalog::holds(std::string_view id) const {
-    return pathOf(std::string(id)).has_value();
+    return find(std::string(id)).has_value();
+}
+
+Status CloudCatalog::addUpstream(const std::string& url, const UpstreamOptions& options) {
+    if (!upstream_) {
+        STIPPLE_TRY(opened, Upstream::open(options));
+        upstream_ = opened;
+    }
+    STIPPLE_TRY(cloud, UpstreamCloud::open(upstream_, url));
+    add({url, cloud}, nameOf(url));
+    return {};
+}
+
+bool CloudCatalog::mustBePrepared(const std::string& id) const {
+    if (!upstream_)
+        return false;
+    auto entry = findKnown(id);
+    return entry && entry->upstream && entry->upstream->mustBePrepared();
+}
+
+bool CloudCatalog::isElsewhere(const std::string& id) const {
+    auto entry = upstream_ ? findKnown(id) : std::nullopt;
+    return entry && entry->upstream;
+}
+
+void CloudCatalog::prepare(const std::string& id, const std::atomic<bool>& stop) const {
+    auto entry = findKnown(id);
+    if (entry && entry->upstream)
+        entry->upstream->prepare(stop);
 }
 
 Result<VersionPtr> CloudCatalog::current(std::string_view id) const {
     std::string key(id);
-    auto path = pathOf(key);
-    if (!path)
+    auto entry = find(key);
+    if (!entry)
         return Error{ErrorCode::notFound, "there is no such cloud", key, ""};
-    auto identity = identityOf(*path);
+    if (entry->upstream)
+        return entry->upstream->current();
+    auto identity = identityOf(entry->path);
     if (!identity) {
         versions_.drop(key);
         refresh();
@@ -103,7 +149,7 @@ Result<VersionPtr> CloudCatalog::current(std::string_view id) const {
     if (auto version = versions_.find(key); isOf(version, *identity)) // by another thread, meanwhile
         return version;
     versions_.drop(key);
-    return openFile(key, *path);
+    return openFile(key, entry->path);
 }
 
 Result<VersionPtr> CloudCatalog::openFile(const std::string& id, const std::string& path) const {
@@ -125,13 +171,19 @@ Result<VersionPtr> CloudCatalog::openFile(const std::string& id, const std::stri
 Result<CloudSummary> CloudCatalog::summary(const std::string& id) const {
     if (auto known = knownSummary(id))
         return *known;
+    static const std::atomic<bool> neverStopped{false};
+    prepare(id, neverStopped);
     STIPPLE_TRY(version, current(id));
     return summaryOf(*version);
 }
 
 std::optional<CloudSummary> CloudCatalog::knownSummary(const std::string& id) const {
-    auto path = knownPathOf(id);
-    auto identity = path ? identityOf(*path) : Error{ErrorCode::notFound, "", "", ""};
+    auto entry = findKnown(id);
+    if (entry && entry->upstream) {
+        auto version = mustBePrepared(id) ? Error{ErrorCode::cancelled, "", "", ""} : current(id);
+        return version ? std::optional(summaryOf(**version)) : std::nullopt;
+    }
+    auto identity = entry ? identityOf(entry->path) : Error{ErrorCode::notFound, "", "", ""};
     if (!identity)
         return std::nullopt;
     std::lock_guard lock(summariesMutex_);
@@ -155,18 +207,18 @@ CloudCatalog::Counts CloudCatalog::counts() const {
     return {entries_.size(), versions_.size(), opened_};
 }
 
-std::optional<std::string> CloudCatalog::pathOf(const std::string& id) const {
-    auto path = knownPathOf(id);
-    if (path || folders_.empty())
-        return path;
+std::optional<CloudCatalog::Entry> CloudCatalog::find(const std::string& id) const {
+    auto entry = findKnown(id);
+    if (entry || folders_.empty())
+        return entry;
     refresh();
-    return knownPathOf(id);
+    return findKnown(id);
 }
 
-std::optional<std::string> CloudCatalog::knownPathOf(const std::string& id) const {
+std::optional<CloudCatalog::Entry> CloudCatalog::findKnown(const std::string& id) const {
     std::shared_lock lock(mutex_);
     auto found = entries_.find(id);
-    return found == entries_.end() ? std::nullopt : std::optional<std::string>(found->second.path);
+    return found == entries_.end() ? std::nullopt : std::optional<Entry>(found->second);
 }
 
 void CloudCatalog::refresh() const {
@@ -189,15 +241,15 @@ void CloudCatalog::takeOver(Folder& folder) const {
     }
     for (const std::string& name : names)
         if (!folder.ids.contains(name))
-            folder.ids[name] = add((fs::path(folder.listing.path()) / name).string());
+            folder.ids[name] = add({(fs::path(folder.listing.path()) / name).string(), nullptr}, name);
 }
 
-std::string CloudCatalog::add(const std::string& path) const {
+std::string CloudCatalog::add(const Entry& entry, const std::string& name) const {
     std::unique_lock lock(mutex_);
-    std::string stem = idOf(path), id = stem;
+    std::string stem = idOf(name), id = stem;
     for (int next = 2; entries_.contains(id); ++next)
         id = cat(stem, "-", next);
-    entries_[id] = {path};
+    entries_[id] = entry;
     return id;
 }
 

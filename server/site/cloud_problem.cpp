@@ -12,6 +12,8 @@ HttpResponse cloudProblem(const Error& error) {
     case ErrorCode::corrupt:
     case ErrorCode::unsupported:
     case ErrorCode::networkFailed:
+    case ErrorCode::changed:
+    case ErrorCode::cancelled:
         return jobProblem(error);
     default:
         return problemResponse(error);

@@ -14,6 +14,8 @@
 
 namespace stipple::server {
 
+class UpstreamVersion;
+
 struct CloudVersion {
     FileHeader header;
     CloudMetadata metadata;
@@ -22,12 +24,14 @@ struct CloudVersion {
     // A source for one thread, which may wait inside read(); `changed` once the bytes are no longer these.
     std::function<std::unique_ptr<ByteSource>()> openSource;
     std::shared_ptr<const OpenFile> file; // for sending from the file directly; null: the bytes are elsewhere
+    std::shared_ptr<UpstreamVersion> upstream; // where that is; null with a file
 
     std::uint64_t sizeBytes() const { return header.fileBytes; }
     // The tag without its quotes: what addresses of immutable answers name ("?version=").
     std::string version() const {
         const std::string& tag = validators.etag;
-        return tag.size() < 2 ? tag : tag.substr(1, tag.size() - 2);
+        std::size_t begin = tag.starts_with("W/") ? 3 : 1;
+        return tag.size() <= begin ? tag : tag.substr(begin, tag.size() - begin - 1);
     }
 };
 

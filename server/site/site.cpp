@@ -7,6 +7,7 @@
 #include "server/site/cloud_address.hpp"
 #include "server/site/cloud_problem.hpp"
 #include "server/site/request_rules.hpp"
+#include "server/upstream/range_writer.hpp"
 #include "shared/base/text.hpp"
 
 namespace stipple::server {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr const char* allowedMethods = "GET, HEAD, OPTIONS";
 constexpr const char* revalidated = "no-cache";
+constexpr const char* cloudType = "application/octet-stream";
 
 bool isRead(const HttpRequest& request) {
     return request.method == "GET" || request.method == "HEAD";
@@ -30,6 +32,11 @@ std::string privateCaching(std::string value) {
     return value.empty() ? "private" : cat("private, ", value);
 }
 
+// Reading nodes of a cloud at another server is waiting for it, and copying; the rest of the API computes.
+bool isTransfer(const Job& job) {
+    return job.kind == "hierarchy" || job.kind == "node" || job.kind == "batch";
+}
+
 } // namespace
 
 Answer Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
@@ -37,7 +44,7 @@ Answer Site::answer(const HttpRequest& request, std::int64_t nowSeconds) const {
     if (auto refusal = checkRequestRules(request))
         answer = std::move(*refusal);
     else
-        answer = route(request, nowSeconds);
+        answer = route(request, nowSeconds, MayWait::no);
     if (auto* response = std::get_if<HttpResponse>(&answer))
         complete(request, *response);
     return answer;
@@ -86,7 +93,7 @@ bool Site::isForAll(const HttpRequest& request, const HttpResponse& response) co
     return !id || !rules->isPrivate(*id);
 }
 
-Answer Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
+Answer Site::route(const HttpRequest& request, std::int64_t nowSeconds, MayWait mayWait) const {
     if (request.method == "OPTIONS" && request.target == "*")
         return preflightResponse(allowedMethods);
     if (request.target.size() > maxTargetBytes)
@@ -98,11 +105,12 @@ Answer Site::route(const HttpRequest& request, std::int64_t nowSeconds) const {
         return preflightResponse(allowedMethods);
     if (!isRead(request))
         return methodNotAllowed(request.method, allowedMethods);
-    return routeRead(request, std::move(*target), nowSeconds);
+    return routeRead(request, std::move(*target), nowSeconds, mayWait);
 }
 
 // Rights come before everything that depends on a cloud: conditions, ranges, parameters, whether it exists.
-Answer Site::routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds) const {
+Answer Site::routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds,
+                       MayWait mayWait) const {
     Visitor visitor(rules(), request, target.query, nowSeconds);
     target.query = withoutSignature(target.query);
     auto id = cloudIdOf(target);
@@ -114,23 +122,70 @@ Answer Site::routeRead(const HttpRequest& request, Target target, std::int64_t n
     if (refusal)
         return std::move(*refusal);
 
-    if (isApiPath(target))
-        return answerApi(request, target, {*catalog_, *resources_, visitor}, nowSeconds);
+    if (id && mayWait == MayWait::no && catalog_->mustBePrepared(*id))
+        return answerByJob(request, *id, nowSeconds);
+    if (isApiPath(target)) {
+        Answer answer = answerApi(request, target, {*catalog_, *resources_, visitor}, nowSeconds);
+        if (auto* job = std::get_if<Job>(&answer); job != nullptr && id && catalog_->isElsewhere(*id))
+            job->isTransfer = isTransfer(*job);
+        return answer;
+    }
     if (id)
-        return answerFile(request, *id, nowSeconds);
+        return answerFile(request, *id, nowSeconds, mayWait);
     if (!target.segments.empty() && (target.segments[0] == "api" || target.segments[0] == "clouds"))
         return problemResponse(404, "there is nothing at this address");
     return page_.answer(request, target, nowSeconds);
 }
 
-HttpResponse Site::answerFile(const HttpRequest& request, const std::string& id,
-                              std::int64_t nowSeconds) const {
-    auto version = catalog_->current(id);
-    if (!version)
-        return cloudProblem(version.error());
-    return answerRepresentation(
-        request, Representation::ofFile((*version)->file, "application/octet-stream", revalidated),
-        nowSeconds);
+Answer Site::answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds,
+                        MayWait mayWait) const {
+    auto found = catalog_->current(id);
+    if (!found)
+        return cloudProblem(found.error());
+    const CloudVersion& version = **found;
+    if (version.file)
+        return answerRepresentation(request, Representation::ofFile(version.file, cloudType, revalidated),
+                                    nowSeconds);
+    Representation elsewhere{Representation::Elsewhere{version.sizeBytes()}, cloudType, revalidated,
+                             version.validators};
+    HttpResponse response = answerRepresentation(request, elsewhere, nowSeconds);
+    if (request.method == "HEAD" || !needsBytes(response) || fillFromHeld(response, *version.upstream))
+        return response;
+    if (mayWait == MayWait::no)
+        return answerByJob(request, id, nowSeconds);
+    auto work = [upstream = version.upstream, response = std::move(response)](AnswerWriter& writer) {
+        return writeRanges(response, *upstream, writer);
+    };
+    return Job{"upstream", std::move(work), nullptr, true};
+}
+
+// Of a cloud at another server, whose answer has to wait for it.
+Job Site::answerByJob(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const {
+    auto work = [this, kept = std::make_shared<const KeptRequest>(request), id, nowSeconds](
+                    AnswerWriter& writer) { return answerWaiting(kept->request(), id, nowSeconds, writer); };
+    return Job{"upstream", std::move(work), nullptr, true};
+}
+
+// If the cloud turns out to have been replaced, the request is put to the new version: a client that asks
+// for the old one gets 412, others the new one.
+Status Site::answerWaiting(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds,
+                           AnswerWriter& writer) const {
+    for (bool isLast = false;; isLast = true) {
+        catalog_->prepare(id, writer.isStopped());
+        Answer answer = route(request, nowSeconds, MayWait::yes);
+        if (auto* response = std::get_if<HttpResponse>(&answer)) {
+            writer.answer(std::move(*response));
+            return {};
+        }
+        Job& job = std::get<Job>(answer);
+        if (!job.isTransfer) {
+            writer.handOver(std::move(job));
+            return {};
+        }
+        Status status = job.run(writer);
+        if (status || status.error().code != ErrorCode::changed || isLast)
+            return status;
+    }
 }
 
 std::vector<Measurement> Site::measurements() const {
@@ -153,6 +208,11 @@ std::vector<Measurement> Site::measurements() const {
     };
     addCache("hierarchy", resources_->hierarchy.counts());
     addCache("pictures", resources_->pictures().counts());
+    if (const Upstream* upstream = catalog_->upstream()) {
+        addCache("upstream", upstream->blocks.counts());
+        for (Measurement& more : upstream->measurements())
+            all.push_back(std::move(more));
+    }
     return all;
 }
 

@@ -44,9 +44,16 @@ class Site final : public RequestHandler {
   private:
     std::shared_ptr<const AccessRules> rules() const { return access_ ? access_->rules() : nullptr; }
     bool isForAll(const HttpRequest& request, const HttpResponse& response) const;
-    Answer route(const HttpRequest& request, std::int64_t nowSeconds) const;
-    Answer routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds) const;
-    HttpResponse answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const;
+    // Who routes: the thread of an event loop, which never waits, or a job's.
+    enum class MayWait { no, yes };
+    Answer route(const HttpRequest& request, std::int64_t nowSeconds, MayWait mayWait) const;
+    Answer routeRead(const HttpRequest& request, Target target, std::int64_t nowSeconds,
+                     MayWait mayWait) const;
+    Answer answerFile(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds,
+                      MayWait mayWait) const;
+    Job answerByJob(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds) const;
+    Status answerWaiting(const HttpRequest& request, const std::string& id, std::int64_t nowSeconds,
+                         AnswerWriter& writer) const;
 
     std::unique_ptr<CloudCatalog> catalog_;
     std::unique_ptr<ApiResources> resources_;

@@ -70,7 +70,7 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
                         const std::vector<std::string>& paths,
                         const std::function<void(const std::string&)>& onReady) {
     raiseDescriptorLimit();
-    auto opened = CloudCatalog::open(paths);
+    auto opened = CloudCatalog::open(paths, {}, options.site.upstream);
     if (!opened)
         return cli::fail(verb, opened.error());
     for (const Error& warning : opened->warnings)

@@ -35,9 +35,34 @@ void addApiOptions(CLI::App& verb, ApiLimits& limits) {
         ->group("Limits");
 }
 
+void addUpstreamOptions(CLI::App& verb, UpstreamOptions& upstream) {
+    auto setFresh = [&upstream](double seconds) {
+        upstream.freshFor = std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+    };
+    auto setTimeout = [&upstream](double seconds) {
+        upstream.answerTimeout = std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000));
+    };
+    for (CLI::Option* option :
+         {addBytes(verb, "--upstream-cache", upstream.cacheBytes,
+                   "Bytes of memory for parts of clouds at other servers (default: 256M)"),
+          verb.add_option_function<double>("--upstream-fresh", setFresh,
+                                           "Seconds until a cloud at another server is looked at again")
+              ->check(CLI::Range(0.0, 86400.0))
+              ->default_str("10"),
+          verb.add_option_function<double>("--upstream-seconds", setTimeout,
+                                           "Seconds that another server may take to go on answering")
+              ->check(CLI::Range(0.1, 3600.0))
+              ->default_str("15"),
+          verb.add_option("--upstream-ca", upstream.caPath,
+                          "PEM file of the certificates that other servers' must rest on, instead of the "
+                          "system's")})
+        option->group("Clouds at other servers");
+}
+
 } // namespace
 
 void addSiteOptions(CLI::App& verb, ChosenSite& chosen) {
+    addUpstreamOptions(verb, chosen.upstream);
     verb.add_option("--page", chosen.pageFolder, "Folder of the built page");
     verb.add_option("--access", chosen.accessFile,
                     "File that says which clouds are private and who may read them (see `stipple access`)");

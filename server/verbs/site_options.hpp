@@ -16,6 +16,7 @@ struct ChosenSite {
     std::string accessFile; // empty: every cloud is public
     std::vector<std::string> origins;
     ApiLimits api;
+    UpstreamOptions upstream;       // of clouds at other servers
     std::string logFormat, logFile; // format empty: no log; file empty: standard error
 };
 

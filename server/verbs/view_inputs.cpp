@@ -1,5 +1,6 @@
 #include "server/verbs/view_inputs.hpp"
 
+#include "client/headless/http_url.hpp"
 #include "converter/build/convert.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/progress.hpp"
@@ -79,6 +80,8 @@ bool isUpToDate(const std::string& converted, const std::string& scan) {
 }
 
 Result<std::string> prepareInput(const std::string& input, const std::atomic<bool>& stop) {
+    if (looksLikeUrl(input))
+        return input;
     std::error_code ignored;
     if (!fs::exists(input, ignored))
         return Error{ErrorCode::notFound, "there is no such file or folder", input, ""};

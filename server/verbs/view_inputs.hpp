@@ -17,8 +17,8 @@ Result<std::string> convertedPath(const std::string& scan);
 // True if `converted` is a cloud of this scan alone, of its size, and at least as new.
 bool isUpToDate(const std::string& converted, const std::string& scan);
 
-// The path to serve for `input`: itself if it is a folder or a .stipple file, else what it was converted to
-// (now, or before if that is newer). Errors: notFound, what the converter says.
+// The path to serve for `input`: itself if it is a folder, a .stipple file or an address, else what it was
+// converted to (now, or before if that is newer). Errors: notFound, what the converter says.
 Result<std::string> prepareInput(const std::string& input, const std::atomic<bool>& stop);
 
 } // namespace stipple::server

@@ -42,6 +42,7 @@ class Collector final : public AnswerWriter {
         return {};
     }
     const std::atomic<bool>& isStopped() const override { return stopped; }
+    void handOver(Job) override { FAIL("no endpoint hands its work over"); }
 
     bool hasBegun = false;
     std::atomic<bool> stopped{false};
