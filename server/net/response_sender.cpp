@@ -5,6 +5,10 @@
 
 namespace stipple::server {
 
+namespace {
+constexpr std::size_t leastRead = 16 * 1024;
+} // namespace
+
 BufferPool::Buffer BufferPool::take() {
     if (spare_.empty())
         return Buffer(new char[bufferBytes]); // not zeroed, as make_unique would
@@ -35,6 +39,8 @@ ResponseSender::Step ResponseSender::step() {
         if (begin_ == end_ && !fill())
             return end(false); // a file is not what it was
         bool goesOn = begin_ == end_ || flush();
+        if (begin_ == end_)
+            appetite_ = std::min(2 * appetite_, BufferPool::bufferBytes);
         if (begin_ == end_ && isAtEnd())
             return end(true);
         if (wait_ == Wait::never)
@@ -69,7 +75,7 @@ bool ResponseSender::fill() {
         headBytes_ = append(head_);
         head_.remove_prefix(headBytes_);
     }
-    while (!isAtEnd() && end_ < BufferPool::bufferBytes) {
+    while (!isAtEnd() && end_ < appetite_) {
         const BodyPart& part = response_.body[part_];
         if (const auto* slice = std::get_if<FileSlice>(&part)) {
             if (!fillFrom(*slice))
@@ -89,7 +95,7 @@ bool ResponseSender::fillFrom(const FileSlice& slice) {
     if (!buffer_)
         buffer_ = pool_.take();
     std::uint64_t left = slice.size - partBytes_;
-    auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left, BufferPool::bufferBytes - end_));
+    auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left, appetite_ - end_));
     if (count > 0 && !(slice.file->readAt(slice.offset + partBytes_, buffer_.get() + end_, count) &&
                        slice.file->isUnchanged()))
         return false;
@@ -106,6 +112,7 @@ void ResponseSender::forgetUnsent() {
     if (begin_ < end_) {
         if (!tail_.isOfFile || begin_ < tail_.begin || !stream_.mayWriteAnew())
             return;
+        appetite_ = std::clamp(inStep_, leastRead, BufferPool::bufferBytes);
         part_ = tail_.part;
         partBytes_ = tail_.partBytes + (begin_ - tail_.begin);
         begin_ = end_ = headBytes_ = 0;

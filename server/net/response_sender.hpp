@@ -78,6 +78,8 @@ class ResponseSender {
     std::size_t begin_ = 0, end_ = 0; // of the buffer: waiting to be sent
     std::size_t headBytes_ = 0;       // of those, that belong to the head
     std::size_t inStep_ = 0;
+    // How much is read at once: little while the client takes little, or most of it would be read in vain.
+    std::size_t appetite_ = BufferPool::bufferBytes;
     struct Tail { // the end of the buffer
         bool isOfFile = false;
         std::size_t begin = 0, part = 0; // where it begins in the buffer; which part it is of
