@@ -18,6 +18,7 @@ export async function startServer(program, args, environment = {}) {
         stdio: ['ignore', 'pipe', 'pipe'],
         env: { ...process.env, ...environment },
     });
+    process.on('exit', () => child.kill('SIGKILL'));
     const server = { child, errors: '', pid: child.pid, scheme: args.includes('--cert') ? 'https' : 'http' };
     child.stderr.on('data', (text) => (server.errors += text));
     let line = '';
@@ -35,6 +36,7 @@ export async function startServer(program, args, environment = {}) {
 export async function startCrowd(server, kind, count, target, bytes) {
     const file = fileURLToPath(new URL('crowd.mjs', import.meta.url));
     const child = spawn(process.execPath, [file, server.port, server.scheme, kind, count, target, bytes], { stdio: ['ignore', 'pipe', 'inherit'] });
+    process.on('exit', () => child.kill('SIGKILL'));
     const crowd = { child, last: '' };
     crowd.kill = async () => {
         const exit = once(child, 'exit');
