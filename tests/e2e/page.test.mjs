@@ -130,7 +130,7 @@ describe('the picture', () => {
                 sizeMode: 'spacing',
                 edl: { enabled: false },
             },
-            tolerance: { share: 0.07, mean: 3.5 },
+            tolerance: { share: 0.01, mean: 0.6 },
         },
     };
 
