@@ -66,14 +66,21 @@ class FileSource final : public ByteSource {
     RequestId next_ = 0;
 };
 
+Error cantOpen(const std::string& path, int reason) {
+    const char* advice = reason == ENOENT   ? "check the name"
+                         : reason == EACCES ? "ask for permission to read it"
+                                            : "";
+    return {reason == ENOENT ? ErrorCode::notFound : ErrorCode::ioFailed,
+            cat("can't be opened: ", std::strerror(reason)), path, advice};
+}
+
 } // namespace
 
 Result<std::unique_ptr<ByteSource>> openFileSource(const std::string& path) {
     // O_NONBLOCK: opening a FIFO must not wait for a writer.
     int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0)
-        return Error{errno == ENOENT ? ErrorCode::notFound : ErrorCode::ioFailed,
-                     cat("can't be opened: ", std::strerror(errno)), path, ""};
+        return cantOpen(path, errno);
     struct stat opened {};
     if (::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode)) {
         ::close(descriptor);

@@ -197,7 +197,8 @@ TEST_CASE("an input that vanishes while it is read is named", "[failures]") {
                                });
     REQUIRE_FALSE(result.ok());
     CHECK(cli::exitCodeOf(result.error()) == cli::inputError);
-    CHECK(result.error().sentence() == (folder / "in.las") + ": can't be opened: No such file or directory");
+    CHECK(result.error().sentence() ==
+          (folder / "in.las") + ": can't be opened: No such file or directory (check the name)");
     CHECK(folder.files() == 0);
 }
 
