@@ -1,0 +1,118 @@
+#include "client/render/gles_programs.hpp"
+
+#include "client/render/gradients.hpp"
+#include "client/render/shader_texts.hpp"
+#include "shared/base/text.hpp"
+
+namespace stipple::gles {
+
+Result<PointProgram> PointProgram::make(bool lowWords, bool circle) {
+    std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
+    defines += lowWords ? "#define LOW_WORDS\n" : "";
+    defines += circle ? "#define CIRCLE\n" : "";
+    STIPPLE_TRY(program, makeProgram(defines, shader_texts::pointsVertex, shader_texts::pointsFragment));
+    PointProgram made;
+    auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
+    made.cell = at("uCell");
+    made.fraction = at("uFraction");
+    made.rowX = at("uRowX");
+    made.rowY = at("uRowY");
+    made.rowD = at("uRowD");
+    made.positionShift = at("uPositionShift");
+    made.deep = at("uDeep");
+    made.fractionBits = at("uFractionBits");
+    made.lowX = at("uLowX");
+    made.highX = at("uHighX");
+    made.lowY = at("uLowY");
+    made.highY = at("uHighY");
+    made.origin = at("uOrigin");
+    made.colourSource = at("uColourSource");
+    made.ramp = at("uRamp");
+    made.centre = at("uCentre");
+    made.nearFar = at("uNearFar");
+    made.nearBits = at("uNearBits");
+    made.depthShift = at("uDepthShift");
+    made.perspective = at("uPerspective");
+    made.sizeByDistance = at("uSizeByDistance");
+    made.size64 = at("uSize64");
+    made.worldSize64 = at("uWorldSize64");
+    made.sizeRange64 = at("uSizeRange64");
+    made.gradient = at("uGradient");
+    made.rank = at("uRank");
+    made.continuous = at("uContinuous");
+    made.growth = at("uGrowth");
+    made.falloff = at("uFalloff");
+    made.leastDensity = at("uLeastDensity");
+    made.sizeByDensity = at("uSizeByDensity");
+    made.program = std::move(program);
+    return made;
+}
+
+void PointProgram::useFor(const RasterFrame& frame) const {
+    glUseProgram(program.id());
+    glUniform2f(centre, frame.centreX, frame.centreY);
+    glUniform2f(nearFar, frame.near, frame.far);
+    glUniform1ui(nearBits, frame.nearBits);
+    glUniform1i(depthShift, frame.depthShift);
+    glUniform1i(perspective, frame.perspective);
+    glUniform1i(sizeByDistance, frame.sizeByDistance);
+    glUniform1f(size64, static_cast<float>(frame.size64));
+    glUniform1f(worldSize64, frame.worldSize64);
+    glUniform2f(sizeRange64, static_cast<float>(frame.minSize64), static_cast<float>(frame.maxSize64));
+    glUniform1i(gradient, 0);
+    glUniform1i(continuous, frame.continuous);
+    glUniform1f(growth, frame.growth);
+    glUniform2f(falloff, frame.falloffX, frame.falloffY);
+    glUniform1f(leastDensity, frame.leastDensity);
+    glUniform1i(sizeByDensity, frame.sizeByDensity);
+}
+
+void PointProgram::setNode(const RasterNode& node) const {
+    glUniform3iv(cell, 1, node.cell.data());
+    glUniform3fv(fraction, 1, node.fraction.data());
+    glUniform3fv(rowX, 1, node.rowX.data());
+    glUniform3fv(rowY, 1, node.rowY.data());
+    glUniform3fv(rowD, 1, node.rowD.data());
+    glUniform1i(positionShift, node.positionShift);
+    glUniform1i(deep, node.deep);
+    if (node.deep) {
+        glUniform1i(fractionBits, node.fractionBits);
+        glUniform3uiv(lowX, 1, node.lowX.data());
+        glUniform3uiv(highX, 1, node.highX.data());
+        glUniform3uiv(lowY, 1, node.lowY.data());
+        glUniform3uiv(highY, 1, node.highY.data());
+        glUniform2ui(origin, node.originX, node.originY);
+    }
+    glUniform1i(colourSource, static_cast<GLint>(node.source));
+    glUniform2f(ramp, node.rampScale, node.rampOffset);
+    glUniform2f(rank, node.rankBase, node.rankStep);
+}
+
+Result<ResolveProgram> ResolveProgram::make() {
+    STIPPLE_TRY(program, makeProgram("", shader_texts::resolveVertex, shader_texts::resolveFragment));
+    ResolveProgram made;
+    auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
+    made.colour = at("uColour");
+    made.depth = at("uDepth");
+    made.nearBits = at("uNearBits");
+    made.depthShift = at("uDepthShift");
+    made.neighbours = at("uNeighbours");
+    made.offsets = at("uOffsets");
+    made.power = at("uPower");
+    made.program = std::move(program);
+    return made;
+}
+
+void ResolveProgram::useFor(const RasterFrame& frame, const EdlSetup& edl) const {
+    glUseProgram(program.id());
+    glUniform1i(colour, 0);
+    glUniform1i(depth, 1);
+    glUniform1ui(nearBits, frame.nearBits);
+    glUniform1i(depthShift, frame.depthShift);
+    glUniform1i(neighbours, edl.enabled ? edl.neighbours : 0);
+    if (edl.enabled)
+        glUniform2iv(offsets, edl.neighbours, edl.offsets[0].data());
+    glUniform1f(power, edl.power);
+}
+
+} // namespace stipple::gles
