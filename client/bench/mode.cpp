@@ -29,12 +29,16 @@ constexpr const char* table = R"json([
  "style": {"sizePixels": 3, "shape": "square", "edl": {"enabled": false}}},
 {"name": "world", "about": "circles as wide as the points are apart, no lighting", "worldSizeSpacings": 1.5,
  "style": {"sizeMode": "world", "edl": {"enabled": false}}},
+{"name": "adaptive", "about": "circles as wide as the spacing of the finest node where they lie, no lighting", "sweep": true,
+ "style": {"sizeMode": "adaptive", "edl": {"enabled": false}}},
 {"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
 {"name": "gles-default", "about": "default, with OpenGL ES", "backend": "gles"},
 {"name": "gles-continuous", "about": "default, with continuous detail and OpenGL ES", "backend": "gles",
  "style": {"detail": {"mode": "continuous"}}},
+{"name": "gles-adaptive", "about": "adaptive, with OpenGL ES", "backend": "gles",
+ "style": {"sizeMode": "adaptive", "edl": {"enabled": false}}},
 {"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
 ])json";

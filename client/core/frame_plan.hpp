@@ -57,8 +57,9 @@ struct DrawNode {
     std::array<float, 3> cameraFraction{};    // see above
     std::array<double, 3> cameraOffset{};     // the same, before it was rounded to float
     Vec3d scale;                              // world units per integer
-    double cameraZ = 0; // world z of the camera, for elevation: z = cameraZ + relative.z
-    double spacing = 0; // minimum distance of the node's points, world units
+    double cameraZ = 0;      // world z of the camera, for elevation: z = cameraZ + relative.z
+    double spacing = 0;      // minimum distance of the node's points, world units
+    std::uint32_t cloud = 0; // nodes of one octree have the same
 };
 
 struct FramePlan {

@@ -35,10 +35,11 @@ constexpr Names<GradientName, 6> gradients{{
     {"grey", GradientName::grey},
     {"terrain", GradientName::terrain},
 }};
-constexpr Names<PointSizeMode, 3> sizeModes{{
+constexpr Names<PointSizeMode, 4> sizeModes{{
     {"fixed", PointSizeMode::fixed},
     {"world", PointSizeMode::world},
     {"spacing", PointSizeMode::spacing},
+    {"adaptive", PointSizeMode::adaptive},
 }};
 constexpr Names<DetailMode, 2> detailModes{{
     {"discrete", DetailMode::discrete},

@@ -8,7 +8,9 @@
 namespace stipple {
 
 enum class ColourMode : std::uint8_t { rgb, intensity, elevation };
-enum class PointSizeMode : std::uint8_t { fixed, world, spacing };
+// `spacing`: by the target spacing of continuous detail; `adaptive`: by the spacing of the finest drawn node
+// where the point lies (Potree thesis §4.3.3).
+enum class PointSizeMode : std::uint8_t { fixed, world, spacing, adaptive };
 enum class PointShape : std::uint8_t { square, circle };
 enum class GradientName : std::uint8_t { viridis, turbo, inferno, spectral, grey, terrain };
 
@@ -47,9 +49,11 @@ struct Style {
     Range intensityRange;                          // raw intensity
     Range elevationRange;                          // world units
     PointSizeMode sizeMode = PointSizeMode::fixed;
-    double sizePixels = 2;     // diameter, fixed mode
-    double sizeWorld = 0.1;    // diameter in world units, world mode
-    double sizeSpacings = 1.5; // diameter in target spacings, spacing mode (continuous detail; else as fixed)
+    double sizePixels = 2;  // diameter, fixed mode
+    double sizeWorld = 0.1; // diameter in world units, world mode
+    // Diameter in spacings, modes spacing (of the target; without continuous detail the mode is as fixed) and
+    // adaptive.
+    double sizeSpacings = 1.5;
     double minSizePixels = 1, maxSizePixels = 64;
     PointShape shape = PointShape::circle;
     Detail detail;

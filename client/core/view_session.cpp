@@ -220,6 +220,7 @@ class Session final : public ViewSession {
             const CachedNode* cached = loading_.cache().find(cacheKey(selected));
             next.nodes.push_back(
                 planNode(cached->node, selected.drawPoints, *cloud.opened.metadata, view_.eye));
+            next.nodes.back().cloud = cloud.state.id;
             planClouds_.push_back(cloud.state.id);
         }
         bool differs = !drawnOnce_ || !samePicture(next, plan_);

@@ -106,9 +106,12 @@ std::vector<std::string_view> neededAttributes(const Style& style, const CloudMe
     return {};
 }
 
-double diameterOf(const Style& style, const View& view, double distance) {
-    double wanted = style.sizeMode == PointSizeMode::world ? style.sizeWorld * view.pixelsPerUnitAt(distance)
-                                                           : style.sizePixels;
+double diameterOf(const Style& style, const View& view, double distance, double spacing) {
+    double wanted = style.sizePixels;
+    if (style.sizeMode == PointSizeMode::world)
+        wanted = style.sizeWorld * view.pixelsPerUnitAt(distance);
+    if (style.sizeMode == PointSizeMode::adaptive)
+        wanted = style.sizeSpacings * spacing * view.pixelsPerUnitAt(distance);
     double least = std::max(1.0, style.minSizePixels),
            most = std::max(least, std::min(255.0, style.maxSizePixels));
     return std::clamp(wanted, least, most);
@@ -139,7 +142,8 @@ void appendMarks(const View& view, const Style& style, const Points& points, std
         Place at;
         if (!place(view, worldOf(points, i), at))
             continue;
-        double diameter = diameterOf(style, view, at.distance), reach = diameter / 2 + 1;
+        double spacing = points.spacings.empty() ? 0 : points.spacings[i];
+        double diameter = diameterOf(style, view, at.distance, spacing), reach = diameter / 2 + 1;
         if (at.x + reach < 0 || at.y + reach < 0 || at.x - reach > view.width || at.y - reach > view.height)
             continue;
         marks.push_back({at.x, at.y, at.distance, diameter, points.firstOrder + i, colours[i]});

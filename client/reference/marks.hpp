@@ -19,6 +19,8 @@ struct Points {
     std::vector<Attribute> attributes; // parallel to batch->columns
     bool colourIs8Bit = false;         // see CloudMetadata
     std::uint64_t firstOrder = 0;      // of the batch's first point; no two points have one order
+    // Per point: spacing of the finest node that holds it, world units. Needed for adaptive sizes alone.
+    std::vector<double> spacings;
 };
 
 // Levels 0..255, not rounded.
@@ -35,8 +37,8 @@ struct Mark {
 // Names of the attributes that the colours of a style need of a cloud; those it lacks are left out.
 std::vector<std::string_view> neededAttributes(const Style& style, const CloudMetadata& metadata);
 
-// Diameter in pixels of a point that far away.
-double diameterOf(const Style& style, const View& view, double distance);
+// Diameter in pixels of a point that far away; `spacing` as in Points::spacings.
+double diameterOf(const Style& style, const View& view, double distance, double spacing = 0);
 
 // Colours of all points. `style` has ranges (min < max). A cloud without the attribute is light grey.
 std::vector<Colour> coloursOf(const Style& style, const Points& points);

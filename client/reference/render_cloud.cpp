@@ -1,5 +1,6 @@
 #include "client/reference/render_cloud.hpp"
 
+#include "client/reference/finest_nodes.hpp"
 #include "client/reference/node_reader.hpp"
 #include "shared/base/text.hpp"
 
@@ -7,6 +8,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <thread>
 
@@ -38,10 +40,18 @@ Status drawAll(CloudReader& reader, std::vector<std::unique_ptr<Easel>>& easels,
     shared.colourIs8Bit = metadata.colourIs8Bit;
     for (int index : attributes)
         shared.attributes.push_back(metadata.schema.attributes[static_cast<std::size_t>(index)]);
+    std::optional<FinestNodes> finest;
+    if (std::any_of(easels.begin(), easels.end(),
+                    [](const auto& easel) { return easel->job.style.sizeMode == PointSizeMode::adaptive; })) {
+        STIPPLE_TRY(nodes, FinestNodes::of(reader));
+        finest = std::move(nodes);
+    }
     return visitPoints(reader, attributes, threads, [&](const PointBatch& batch, std::uint64_t firstOrder) {
         Points points = shared;
         points.batch = &batch;
         points.firstOrder = firstOrder;
+        if (finest)
+            points.spacings = finest->spacingsAt(batch);
         std::vector<Mark> marks;
         for (auto& easel : easels) {
             marks.clear();

@@ -46,11 +46,14 @@ Status attachShader(GLuint program, GLenum kind, const std::string& defines, con
 
 } // namespace
 
-Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText) {
+Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
+                            const char* captured) {
     Program program;
     GLuint id = program.make();
     STIPPLE_CHECK(attachShader(id, GL_VERTEX_SHADER, defines, vertexText));
     STIPPLE_CHECK(attachShader(id, GL_FRAGMENT_SHADER, defines, fragmentText));
+    if (captured != nullptr)
+        glTransformFeedbackVaryings(id, 1, &captured, GL_INTERLEAVED_ATTRIBS);
     glLinkProgram(id);
     GLint linked = GL_FALSE;
     glGetProgramiv(id, GL_LINK_STATUS, &linked);

@@ -66,7 +66,9 @@ using Program = Object<ProgramKind>;
 
 // Compiles and links. `defines` ("#define CIRCLE\n…") goes between the "#version 300 es" line and the texts.
 // Error: unsupported, with the driver's log.
-Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText);
+// `captured`: an output of the vertex shader for transform feedback; nullptr: none.
+Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
+                            const char* captured = nullptr);
 
 // The first pending GL error as an error (limitExceeded if out of memory), or success; clears all of them.
 // `doing`: "uploading node 3-1-2-0".

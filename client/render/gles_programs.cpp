@@ -1,16 +1,47 @@
 #include "client/render/gles_programs.hpp"
 
+#include "client/render/drawn_octree.hpp"
 #include "client/render/gradients.hpp"
 #include "client/render/shader_texts.hpp"
 #include "shared/base/text.hpp"
 
 namespace stipple::gles {
 
-Result<PointProgram> PointProgram::make(bool lowWords, bool circle) {
+namespace {
+
+std::string definesFor(const PointVariant& variant) {
     std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
-    defines += lowWords ? "#define LOW_WORDS\n" : "";
-    defines += circle ? "#define CIRCLE\n" : "";
-    STIPPLE_TRY(program, makeProgram(defines, shader_texts::pointsVertex, shader_texts::pointsFragment));
+    defines += variant.lowWords ? "#define LOW_WORDS\n" : "";
+    defines += variant.circle ? "#define CIRCLE\n" : "";
+    defines += variant.captureLevels ? "#define CAPTURE_LEVELS\n" : "";
+    if (variant.adaptive)
+        defines += cat("#define ADAPTIVE\n#define OCTREE_WIDTH ", octreeTextureWidth, "\n");
+    return defines;
+}
+
+} // namespace
+
+PointVariant PointVariant::of(const RasterFrame& frame, const ResidentNode& node) {
+    PointVariant variant;
+    variant.lowWords = node.positionShift > 0;
+    variant.circle = frame.circle;
+    variant.adaptive = frame.adaptive;
+    return variant;
+}
+
+Result<const PointProgram*> PointPrograms::get(const PointVariant& variant) {
+    auto found = made_.find(variant);
+    if (found == made_.end()) {
+        STIPPLE_TRY(program, PointProgram::make(variant));
+        found = made_.emplace(variant, std::move(program)).first;
+    }
+    return &found->second;
+}
+
+Result<PointProgram> PointProgram::make(const PointVariant& variant) {
+    std::string vertex = cat(variant.adaptive ? shader_texts::octree : "", shader_texts::pointsVertex);
+    STIPPLE_TRY(program, makeProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
+                                     variant.captureLevels ? "vLevels" : nullptr));
     PointProgram made;
     auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
     made.cell = at("uCell");
@@ -44,6 +75,10 @@ Result<PointProgram> PointProgram::make(bool lowWords, bool circle) {
     made.falloff = at("uFalloff");
     made.leastDensity = at("uLeastDensity");
     made.sizeByDensity = at("uSizeByDensity");
+    made.octree = at("uOctree");
+    made.octreePlace = at("uOctreePlace");
+    made.nodeBits = at("uNodeBits");
+    made.nodeSize64 = at("uNodeSize64");
     made.program = std::move(program);
     return made;
 }
@@ -59,7 +94,8 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform1f(size64, static_cast<float>(frame.size64));
     glUniform1f(worldSize64, frame.worldSize64);
     glUniform2f(sizeRange64, static_cast<float>(frame.minSize64), static_cast<float>(frame.maxSize64));
-    glUniform1i(gradient, 0);
+    glUniform1i(gradient, gradientUnit);
+    glUniform1i(octree, octreeUnit);
     glUniform1i(continuous, frame.continuous);
     glUniform1f(growth, frame.growth);
     glUniform2f(falloff, frame.falloffX, frame.falloffY);
@@ -86,6 +122,12 @@ void PointProgram::setNode(const RasterNode& node) const {
     glUniform1i(colourSource, static_cast<GLint>(node.source));
     glUniform2f(ramp, node.rampScale, node.rampOffset);
     glUniform2f(rank, node.rankBase, node.rankStep);
+    glUniform1f(nodeSize64, node.nodeSize64);
+}
+
+void PointProgram::setOctreePlace(std::uint32_t place, const ResidentNode& node) const {
+    glUniform1i(octreePlace, static_cast<GLint>(place));
+    glUniform1i(nodeBits, node.nodeBits);
 }
 
 Result<ResolveProgram> ResolveProgram::make() {

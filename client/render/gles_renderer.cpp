@@ -3,6 +3,7 @@
 #include "client/render/gles_depth_reader.hpp"
 #include "client/render/gles_nodes.hpp"
 #include "client/render/gles_objects.hpp"
+#include "client/render/gles_octree.hpp"
 #include "client/render/gles_programs.hpp"
 #include "client/render/gles_targets.hpp"
 #include "client/render/gradients.hpp"
@@ -10,7 +11,6 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 namespace stipple {
@@ -39,10 +39,10 @@ bool takesPointsDirectly(unsigned target) {
 class Gles3Renderer final : public GlesRenderer {
   public:
     Status init() {
-        for (std::size_t i = 0; i < pointPrograms_.size(); ++i) {
-            STIPPLE_TRY(program, PointProgram::make((i & 1) != 0, (i & 2) != 0));
-            pointPrograms_[i] = std::move(program);
-        }
+        // What does not compile is told at once.
+        for (bool lowWords : {false, true})
+            for (bool circle : {false, true})
+                STIPPLE_CHECK(compile({.lowWords = lowWords, .circle = circle}));
         STIPPLE_TRY(resolve, ResolveProgram::make());
         resolve_ = std::move(resolve);
         makeTexture(gradient_, GL_RGBA8, gradientEntries, 1);
@@ -59,7 +59,7 @@ class Gles3Renderer final : public GlesRenderer {
             STIPPLE_CHECK(points_.resize(plan.width, plan.height));
 
         glBindFramebuffer(GL_FRAMEBUFFER, direct ? target : points_.framebuffer.id());
-        drawPoints(plan, frame);
+        STIPPLE_CHECK(drawPoints(plan, frame));
         plan.counters.passesRun += 1;
         if (!direct) {
             glBindFramebuffer(GL_FRAMEBUFFER, target);
@@ -77,16 +77,22 @@ class Gles3Renderer final : public GlesRenderer {
         RasterFrame frame = rasterFrame(plan);
         STIPPLE_CHECK(points_.resize(plan.width, plan.height));
         glBindFramebuffer(GL_FRAMEBUFFER, points_.framebuffer.id());
-        drawPoints(plan, frame);
+        STIPPLE_CHECK(drawPoints(plan, frame));
         nodes_.endFrame();
         return depthReader_.read(frame, points_.depth.id());
     }
 
     std::uint64_t gpuBytes() const override {
-        return nodes_.bytes() + points_.bytes() + 4ull * gradientEntries;
+        return nodes_.bytes() + points_.bytes() + octree_.bytes() + 4ull * gradientEntries;
     }
 
   private:
+    Status compile(const PointVariant& variant) {
+        STIPPLE_TRY(program, pointPrograms_.get(variant));
+        (void)program;
+        return {};
+    }
+
     static Status checkSize(const FramePlan& plan) {
         if (plan.width < 1 || plan.height < 1 || plan.width > maxPictureSide || plan.height > maxPictureSide)
             return Error{ErrorCode::invalidArgument,
@@ -116,7 +122,7 @@ class Gles3Renderer final : public GlesRenderer {
         loadedGradient_ = name;
     }
 
-    void drawPoints(const FramePlan& plan, const RasterFrame& frame) {
+    Status drawPoints(const FramePlan& plan, const RasterFrame& frame) {
         const auto& background = plan.style.background;
         glViewport(0, 0, plan.width, plan.height);
         glDisable(GL_SCISSOR_TEST);
@@ -131,6 +137,15 @@ class Gles3Renderer final : public GlesRenderer {
         glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
         glClearDepthf(1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        return drawNodes(plan, frame);
+    }
+
+    // All points, into what is bound.
+    Status drawNodes(const FramePlan& plan, const RasterFrame& frame) {
+        if (frame.adaptive)
+            octree_.load(plan);
+        else
+            octree_.clear();
         loadGradient(plan.style.gradient);
         glVertexAttrib4f(colourLocation, (plainColourWord & 255) * levelsInv,
                          (plainColourWord >> 8 & 255) * levelsInv, (plainColourWord >> 16 & 255) * levelsInv,
@@ -140,19 +155,18 @@ class Gles3Renderer final : public GlesRenderer {
         const PointProgram* inUse = nullptr;
         for (std::size_t index : drawOrder(plan)) {
             const DrawNode& node = plan.nodes[index];
-            const PointProgram& program = programFor(*node.node, frame);
-            if (&program != inUse)
-                program.useFor(frame);
-            inUse = &program;
+            STIPPLE_TRY(program, pointPrograms_.get(PointVariant::of(frame, *node.node)));
+            if (program != inUse)
+                program->useFor(frame);
+            inUse = program;
             RasterNode raster = rasterNode(plan, node);
             nodes_.bind(*node.node, raster.source);
-            program.setNode(raster);
+            program->setNode(raster);
+            if (frame.adaptive)
+                program->setOctreePlace(octree_.placeOf(index), *node.node);
             glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(node.pointCount));
         }
-    }
-
-    const PointProgram& programFor(const ResidentNode& node, const RasterFrame& frame) const {
-        return pointPrograms_[(node.positionShift > 0 ? 1u : 0u) | (frame.circle ? 2u : 0u)];
+        return {};
     }
 
     void resolve(const RasterFrame& frame, const EdlSetup& edl) {
@@ -171,7 +185,8 @@ class Gles3Renderer final : public GlesRenderer {
         glBindTexture(GL_TEXTURE_2D, 0);
     }
 
-    std::array<PointProgram, 4> pointPrograms_; // bit 0: low words, bit 1: circles
+    PointPrograms pointPrograms_;
+    OctreeTexture octree_;
     ResolveProgram resolve_;
     Texture gradient_;
     std::optional<GradientName> loadedGradient_;

@@ -139,7 +139,8 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     frame.worldSize64 = static_cast<float>(pixels * sizeSteps);
     frame.size64 = std::clamp(sizeStepsOf(pixels), frame.minSize64, frame.maxSize64);
     setDetail(plan, frame);
-    bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity;
+    frame.adaptive = style.sizeMode == PointSizeMode::adaptive;
+    bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
     bool singlePixels = (sizesDiffer ? frame.maxSize64 : frame.size64) == sizeSteps;
     frame.circle = style.shape == PointShape::circle && !singlePixels;
     return frame;
@@ -165,6 +166,8 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
         raster.rankBase = static_cast<float>(density.base * target * target);
         raster.rankStep = static_cast<float>(density.step * target * target);
     }
+
+    raster.nodeSize64 = static_cast<float>(node.spacing * style.sizeSpacings * focal.y * sizeSteps);
 
     raster.source = sourceOf(style.colourMode, *node.node);
     Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;

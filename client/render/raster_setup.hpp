@@ -25,6 +25,9 @@
 //              p = max(1 - falloff · |(x, y) - centre| / centre, least density)          "/" per axis
 //            and is drawn where q < 1, with (1 - q) · growth of its size, at most all of it and at least a
 //            pixel.
+// Adaptive   sizes come from the spacing of the finest drawn node where the point lies, k levels below its
+// own
+//            (drawn_octree.hpp): size64 = clamp(nodeSize64 · 2^-k / d + 0.5)     orthographic: without "/ d"
 // Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
 //            point is covered always, so that no point vanishes between pixel centres.
 // Depth      step q = (bits(d) - bits(near)) >> depthShift, where bits() reads the float as an integer: a
@@ -80,6 +83,7 @@ struct RasterFrame {
     int size64 = 64;             // 1/64 pixel, clamped
     float worldSize64 = 0;       // 1/64 pixel at distance 1
     int minSize64 = 64, maxSize64 = 64;
+    bool adaptive = false;   // see "Adaptive"; size64 does not matter
     bool circle = false;     // false where every point is a single pixel
     bool continuous = false; // continuous detail, see "Detail"
     float growth = 0;
@@ -98,6 +102,7 @@ struct RasterNode {
     std::array<std::uint32_t, 3> lowX{}, highX{}, lowY{}, highY{};
     std::uint32_t originX = 0, originY = 0;
     float rankBase = 0, rankStep = 0; // see "Detail"
+    float nodeSize64 = 0;             // see "Adaptive"; 1/64 pixel, at distance 1 in perspective
     ColourSource source = ColourSource::words;
     // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
     // r.z for elevation.

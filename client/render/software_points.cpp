@@ -116,10 +116,11 @@ void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t c
 template <bool Shared>
 void placeSprites(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
                   std::uint64_t* cells) {
+    const bool sized = sizesDiffer(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
-        int size64 = frame.sizeByDistance || frame.continuous ? block.size64[i] : frame.size64;
+        int size64 = sized ? block.size64[i] : frame.size64;
         placeSprite<Shared>(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, 2 * size64,
                             (std::uint64_t{block.step[i]} << indexBits) | (index + i), cells);
     }
@@ -146,20 +147,19 @@ void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count,
 template <bool Shared>
 void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells) {
     Block block;
-    bool single = !frame.sizeByDistance && !frame.sizeByDensity && frame.size64 == sizeSteps;
-    Sizing sizing = single ? Sizing::single : frame.sizeByDistance ? Sizing::byDistance : Sizing::fixed;
+    const Sizing sizing = sizingOf(frame);
     Transform transformBlock = transformFor(frame, *run.raster, sizing);
     for (std::uint32_t done = 0; done < run.count; done += blockPoints) {
         std::size_t first = run.first + done;
         std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
-        Words words{run.node->positionWords.data() + 2 * first,
-                    run.raster->positionShift > 0 ? run.node->positionLowWords.data() + first : nullptr,
-                    static_cast<std::uint32_t>(first)};
+        Words words = wordsFrom(*run.node, first);
+        if (sizing == Sizing::adaptive)
+            fillFineness(run.octree, run.place, *run.node, words, count, block);
         transformBlock(frame, *run.raster, words, count, block);
         std::uint64_t index = run.index + done;
-        if (single)
+        if (sizing == Sizing::single)
             placeSingle<Shared>(block, count, index, cells);
-        else if (frame.sizeByDistance || frame.continuous)
+        else if (sizing != Sizing::fixed || frame.continuous)
             placeSprites<Shared>(frame, block, count, index, cells);
         else
             placeFixed<Shared>(frame, block, count, index, cells);

@@ -24,6 +24,9 @@ struct PointRun {
     const RasterNode* raster = nullptr;
     std::uint32_t first = 0, count = 0;
     std::uint64_t index = 0; // of point `first` in draw order
+    const std::uint32_t* octree =
+        nullptr; // drawn_octree.hpp, and the node's place in it: adaptive sizes only
+    std::uint32_t place = 0;
 };
 
 // Draws a run into `cells`: width × height, rows from top to bottom, and one more that must be 0 (points

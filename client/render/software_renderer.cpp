@@ -1,5 +1,6 @@
 #include "client/render/software_renderer.hpp"
 
+#include "client/render/drawn_octree.hpp"
 #include "client/render/raster_setup.hpp"
 #include "client/render/software_points.hpp"
 #include "client/render/software_shading.hpp"
@@ -65,10 +66,12 @@ class CellRenderer final : public SoftwareRenderer {
     }
 
     void placeNodes(const FramePlan& plan) {
+        octree_ = frame_.adaptive ? drawnOctree(plan) : DrawnOctree();
         nodes_.clear();
         std::uint64_t index = 0;
         for (std::size_t i : drawOrder(plan)) {
-            nodes_.push_back({&plan.nodes[i], rasterNode(plan, plan.nodes[i]), index});
+            nodes_.push_back({&plan.nodes[i], rasterNode(plan, plan.nodes[i]), index,
+                              frame_.adaptive ? octree_.places[i] : 0});
             index += plan.nodes[i].pointCount;
         }
     }
@@ -84,7 +87,7 @@ class CellRenderer final : public SoftwareRenderer {
             for (std::uint32_t first = 0; first < placed.draw->pointCount; first += runPoints)
                 runs_.push_back({placed.draw->node.get(), &placed.raster, first,
                                  std::min(runPoints, placed.draw->pointCount - first),
-                                 placed.firstIndex + first});
+                                 placed.firstIndex + first, octree_.words.data(), placed.octreePlace});
         bool shared = workers_.threads() > 1;
         workers_.run(runs_.size(), [&](std::size_t i) { drawRun(frame, runs_[i], cells_.data(), shared); });
     }
@@ -101,6 +104,7 @@ class CellRenderer final : public SoftwareRenderer {
     Image image_;
     RasterFrame frame_; // of image_
     std::vector<std::uint64_t> cells_;
+    DrawnOctree octree_; // adaptive sizes
     std::vector<PlacedNode> nodes_;
     std::vector<PointRun> runs_;
     InverseDistances distances_;

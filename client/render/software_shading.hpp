@@ -15,7 +15,8 @@ namespace stipple {
 struct PlacedNode {
     const DrawNode* draw = nullptr;
     RasterNode raster;
-    std::uint64_t firstIndex = 0; // of its first point in draw order
+    std::uint64_t firstIndex = 0;  // of its first point in draw order
+    std::uint32_t octreePlace = 0; // DrawnOctree::places, with adaptive sizes
 };
 
 // 1 / view distance per pixel and 0 where there is no point, with a margin of zeros around the picture as

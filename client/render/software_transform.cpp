@@ -1,5 +1,8 @@
 #include "client/render/software_transform.hpp"
 
+#include "client/render/drawn_octree.hpp"
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -78,7 +81,7 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const std::uint32_t outside = columns * static_cast<std::uint32_t>(frame.height);
     const Wrapping wrapX(node.lowX, node.highX, node.originX), wrapY(node.lowY, node.highY, node.originY);
     const int fractionBits = node.fractionBits;
-    const float worldSize64 = frame.worldSize64;
+    const float worldSize64 = frame.worldSize64, nodeSize64 = node.nodeSize64;
     const auto minSize64 = static_cast<float>(frame.minSize64),
                maxSize64 = static_cast<float>(frame.maxSize64);
     const float rankBase = node.rankBase, rankStep = node.rankStep, growth = frame.growth;
@@ -157,6 +160,12 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             const float size = clampFloat(worldSize64 * (1.0f / d) + 0.5f, minSize64, maxSize64);
             block.size64[i] = static_cast<std::int32_t>(
                 Rank == Ranking::continuous ? clampFloat(size * grown, pixelSize64, maxSize64) : size);
+        } else if constexpr (Size == Sizing::adaptive) {
+            const float scale = Place == Placing::perspective ? 1.0f / d : 1.0f;
+            const float size =
+                clampFloat(nodeSize64 * block.fineness[i] * scale + 0.5f, minSize64, maxSize64);
+            block.size64[i] = static_cast<std::int32_t>(
+                Rank == Ranking::continuous ? clampFloat(size * grown, pixelSize64, maxSize64) : size);
         } else if constexpr (Rank == Ranking::continuous && Size == Sizing::fixed) {
             const float size =
                 sizeByDensity ? clampFloat(fixedSize64 / density, minSize64, maxSize64) : fixedSize64;
@@ -207,12 +216,40 @@ Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
 
 } // namespace
 
+Sizing sizingOf(const RasterFrame& frame) {
+    if (frame.adaptive)
+        return Sizing::adaptive;
+    if (frame.sizeByDistance)
+        return Sizing::byDistance;
+    return frame.size64 == sizeSteps && !frame.sizeByDensity ? Sizing::single : Sizing::fixed;
+}
+
+void fillFineness(const std::uint32_t* octree, std::uint32_t place, const ResidentNode& node, Words words,
+                  std::size_t count, Block& block) {
+    if ((octree[place] & 255u) == 0) {
+        std::fill_n(block.fineness.begin(), count, 1.0f);
+        return;
+    }
+    const int shift = node.positionShift;
+    const std::uint32_t lowMask = (1u << shift) - 1u;
+    for (std::size_t i = 0; i < count; ++i) {
+        Vec3<std::uint32_t> p = unpackPosition(words.position[2 * i], words.position[2 * i + 1]);
+        if (words.low != nullptr)
+            p = {(p.x << shift) | (words.low[i] & lowMask), (p.y << shift) | ((words.low[i] >> 10) & lowMask),
+                 (p.z << shift) | ((words.low[i] >> 20) & lowMask)};
+        const int levels = levelsBelow(octree, place, node.nodeBits, p.x, p.y, p.z);
+        block.fineness[i] = floatOfBits(static_cast<std::uint32_t>(127 - levels) << 23);
+    }
+}
+
 Transform transformFor(const RasterFrame& frame, const RasterNode& node, Sizing sizing) {
     switch (sizing) {
     case Sizing::single:
         return transformFor<Sizing::single>(frame, node);
     case Sizing::byDistance:
         return transformFor<Sizing::byDistance>(frame, node);
+    case Sizing::adaptive:
+        return transformFor<Sizing::adaptive>(frame, node);
     case Sizing::fixed:
         break;
     }

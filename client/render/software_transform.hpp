@@ -18,9 +18,16 @@ struct Block {
     alignas(64) std::array<std::int32_t, blockPoints> x, y, size64;
     alignas(64) std::array<std::uint32_t, blockPoints> step;
     alignas(64) std::array<std::uint32_t, blockPoints> pixel; // single pixels only
+    // Adaptive sizes: 2^-k (raster_setup.hpp, "Adaptive"); to be filled before the transform.
+    alignas(64) std::array<float, blockPoints> fineness;
 };
 
-enum class Sizing { single, fixed, byDistance };
+enum class Sizing { single, fixed, byDistance, adaptive };
+Sizing sizingOf(const RasterFrame& frame);
+// Whether a block's size64 says how large its points are; else all are of RasterFrame::size64.
+inline bool sizesDiffer(const RasterFrame& frame) {
+    return frame.adaptive || frame.sizeByDistance || frame.continuous;
+}
 
 struct Words {
     const std::uint32_t* position;
@@ -28,7 +35,17 @@ struct Words {
     std::uint32_t rank;       // of the first point in its node
 };
 
+inline Words wordsFrom(const ResidentNode& node, std::size_t first) {
+    return {node.positionWords.data() + 2 * first,
+            node.positionShift > 0 ? node.positionLowWords.data() + first : nullptr,
+            static_cast<std::uint32_t>(first)};
+}
+
 using Transform = void (*)(const RasterFrame&, const RasterNode&, Words, std::size_t count, Block&);
+
+// `octree`: words of drawn_octree.hpp; `place`: the node's.
+void fillFineness(const std::uint32_t* octree, std::uint32_t place, const ResidentNode& node, Words words,
+                  std::size_t count, Block& block);
 
 // Fills the first `count` <= blockPoints entries of a block; for the processor that runs it.
 Transform transformFor(const RasterFrame& frame, const RasterNode& node, Sizing sizing);

@@ -65,6 +65,9 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
     for (const TestNode& node : nodes) {
         NodeCloud cloud(node);
         cloud.points.firstOrder = order;
+        if (style.sizeMode == PointSizeMode::adaptive)
+            for (const TestPoint& point : node.points)
+                cloud.points.spacings.push_back(finestSpacing(nodes, node, point));
         order += node.points.size();
         appendMarks(viewOf(view), style, cloud.points, marks);
     }

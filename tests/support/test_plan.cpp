@@ -47,8 +47,10 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
     std::uint32_t index = 0;
     for (const TestNode& node : nodes) {
         auto resident = std::make_shared<ResidentNode>(*residentNode(node));
-        resident->key = {8, index++, 0, 0};
+        resident->key = node.spacing > 0 ? node.key : NodeKey{8, index, 0, 0};
+        ++index;
         DrawNode draw;
+        draw.spacing = node.spacing;
         draw.pointCount = resident->pointCount;
         draw.scale = node.scale;
         for (int axis = 0; axis < 3; ++axis) {
@@ -70,6 +72,50 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
         plan.nodes.push_back(std::move(draw));
     }
     return plan;
+}
+
+std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t pointsPerNode, int rootBits,
+                                   Vec3d corner, double scale) {
+    TestRandom random(seed);
+    std::vector<TestNode> nodes;
+    std::vector<NodeKey> keys{{}};
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        NodeKey key = keys[i];
+        int bits = rootBits - key.level;
+        double side = std::ldexp(scale, bits);
+        TestNode node = randomNode(random.next(), pointsPerNode, bits,
+                                   corner + Vec3d{key.x * side, key.y * side, key.z * side}, scale);
+        node.key = key;
+        node.spacing = std::ldexp(scale, bits - 3);
+        nodes.push_back(std::move(node));
+        for (int child = 0; child < 8 && key.level < depth; ++child)
+            if (key.level == 0 || random.below(3) > 0)
+                keys.push_back(key.child(child));
+    }
+    return nodes;
+}
+
+int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point) {
+    int level = 0;
+    auto inside = [](std::uint64_t at, std::uint64_t first, std::uint64_t side) {
+        return at >= first && at < first + side;
+    };
+    // In steps of the root.
+    auto corner = [](const TestNode& of, std::uint32_t coordinate) {
+        return std::uint64_t{coordinate} << of.nodeBits;
+    };
+    for (const TestNode& other : octree) {
+        std::uint64_t side = std::uint64_t{1} << other.nodeBits;
+        if (inside(corner(node, node.key.x) + point.x, corner(other, other.key.x), side) &&
+            inside(corner(node, node.key.y) + point.y, corner(other, other.key.y), side) &&
+            inside(corner(node, node.key.z) + point.z, corner(other, other.key.z), side))
+            level = std::max(level, int{other.key.level});
+    }
+    return level;
+}
+
+double finestSpacing(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point) {
+    return std::ldexp(node.spacing, node.key.level - finestLevel(octree, node, point));
 }
 
 std::uint64_t TestRandom::next() { // splitmix64

@@ -22,6 +22,8 @@ struct TestNode {
     Vec3d corner{0, 0, 0};
     Vec3d scale{0.01, 0.01, 0.01};
     bool hasColour = true, hasIntensity = true;
+    NodeKey key;        // level 0: testPlan gives each node a key of its own, at level 8
+    double spacing = 0; // of its points, world units
 
     Vec3d world(const TestPoint& p) const {
         return {corner.x + scale.x * p.x, corner.y + scale.y * p.y, corner.z + scale.z * p.z};
@@ -37,6 +39,14 @@ struct TestView {
 
 std::shared_ptr<const ResidentNode> residentNode(const TestNode& node);
 FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style = {});
+
+// The nodes of an octree of `depth` levels below its root, some branches of which end sooner. Each holds
+// `pointsPerNode` random points; the root is 2^rootBits steps wide. Root spacing: an eighth of its side.
+std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t pointsPerNode, int rootBits,
+                                   Vec3d corner, double scale);
+// The spacing of the finest node that holds the point, found by looking at all nodes of such an octree.
+double finestSpacing(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);
+int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);
 
 // Numbers in [0, 1) that are the same everywhere.
 class TestRandom {

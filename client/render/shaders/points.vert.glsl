@@ -1,6 +1,7 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
-// Defined before this text: LOW_WORDS where the node has a third position word; CIRCLE for round points.
+// Defined before this text: LOW_WORDS where the node has a third position word; CIRCLE for round points; ADAPTIVE
+// (with the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -44,10 +45,17 @@ uniform vec2 uFalloff;
 uniform float uLeastDensity;
 uniform bool uSizeByDensity;
 uniform sampler2D uGradient;
+#ifdef ADAPTIVE
+uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
+#endif
 
 flat out vec4 vColour;
 #ifdef CIRCLE
 flat out ivec3 vDisc; // centre in 1/256 pixel, squared radius in (1/256 pixel)²
+#endif
+
+#ifdef CAPTURE_LEVELS
+flat out int vLevels;
 #endif
 
 float along(vec3 row, vec3 r) {
@@ -105,6 +113,12 @@ void main() {
     vDisc = ivec3(0);
 #endif
     gl_PointSize = 1.0;
+#ifdef ADAPTIVE
+    int levels = levelsBelow(p);
+#ifdef CAPTURE_LEVELS
+    vLevels = levels;
+#endif
+#endif
     if (!(d >= uNearFar.x && d <= uNearFar.y)) {
         discardPoint();
         return;
@@ -129,10 +143,15 @@ void main() {
     vec2 cell = uDeep ? vec2(deepCell(steps, window)) : floor(window * 128.0);
 
     float size64 = uSize64;
+#ifdef ADAPTIVE
+    float fineness = uintBitsToFloat(uint(127 - levels) << 23);
+    size64 = clamp(uNodeSize64 * fineness * scale + 0.5, uSizeRange64.x, uSizeRange64.y);
+#else
     if (uSizeByDistance)
         size64 = clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y);
     else if (uSizeByDensity)
         size64 = clamp(uSize64 / density, uSizeRange64.x, uSizeRange64.y);
+#endif
     if (uContinuous)
         size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);
     size64 = floor(size64);

@@ -109,6 +109,7 @@ export class LookPanel extends ModelElement {
                 [
                     ['fixed', 'Pixels'],
                     ['world', 'World'],
+                    ['adaptive', 'Octree'],
                     ...(isContinuous ? [spacingSize] : []),
                 ],
                 (sizeMode) => this.model.changeStyle({ sizeMode }),
@@ -147,6 +148,7 @@ export class LookPanel extends ModelElement {
                     (sizeWorld) => this.model.changeStyle({ sizeWorld }),
                 );
             case 'spacing':
+            case 'adaptive':
                 return slider(
                     'Size',
                     style.sizeSpacings,

@@ -18,7 +18,7 @@ export interface Style {
     gradient: 'viridis' | 'turbo' | 'inferno' | 'spectral' | 'grey' | 'terrain';
     intensityRange: [number, number] | null;
     elevationRange: [number, number] | null;
-    sizeMode: 'fixed' | 'world' | 'spacing';
+    sizeMode: 'fixed' | 'world' | 'spacing' | 'adaptive';
     sizePixels: number;
     sizeWorld: number;
     sizeSpacings: number;

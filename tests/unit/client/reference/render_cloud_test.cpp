@@ -1,3 +1,4 @@
+#include "client/reference/finest_nodes.hpp"
 #include "client/reference/render_cloud.hpp"
 #include "shared/format/cloud_file.hpp"
 #include "shared/io/memory_source.hpp"
@@ -6,6 +7,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -76,6 +78,30 @@ TEST_CASE("a cloud is drawn with every point, in any colour") {
         CHECK(std::count_if(picture.distances.begin(), picture.distances.end(),
                             [](float d) { return d > 0; }) > 2000);
     }
+}
+
+TEST_CASE("the spacing where a point lies is that of the finest of all nodes that hold it") {
+    MemorySource source(cloud().file);
+    auto reader = CloudReader::open(source);
+    REQUIRE(reader.ok());
+    auto finest = reference::FinestNodes::of(**reader);
+    REQUIRE(finest.ok());
+    const CloudMetadata& metadata = (*reader)->metadata();
+    int inner = 0;
+    for (const NodeEntry& entry : cloud().nodes) {
+        auto batch = (*reader)->readNode(entry);
+        REQUIRE(batch.ok());
+        std::vector<double> found = finest->spacingsAt(*batch);
+        for (std::size_t i = 0; i < batch->size(); ++i) {
+            double least = metadata.spacing;
+            for (const NodeEntry& other : cloud().nodes)
+                if (metadata.rootCube.keyOf(batch->positions[i], other.key.level) == other.key)
+                    least = std::min(least, std::ldexp(metadata.spacing, -other.key.level));
+            REQUIRE(found[i] == least);
+            inner += least < std::ldexp(metadata.spacing, -entry.key.level);
+        }
+    }
+    CHECK(inner > 0);
 }
 
 TEST_CASE("threads, and how many pictures are drawn at a time, change nothing") {
