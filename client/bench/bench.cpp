@@ -140,7 +140,8 @@ class CloudBench {
                     if (std::none_of(missing.begin(), missing.end(), same) && !cache_->has(request))
                         missing.push_back(request);
                 }
-        std::uint64_t bytes = reference::Canvas::bytesFor(options_.width, options_.height, options_.samples);
+        std::uint64_t bytes =
+            reference::Canvas::bytesFor(options_.width, options_.height, options_.samples, true);
         auto atOnce = static_cast<std::size_t>(std::max<std::uint64_t>(1, referencesAtOnce / bytes));
         for (std::size_t first = 0; first < missing.size(); first += atOnce)
             STIPPLE_CHECK(

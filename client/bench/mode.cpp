@@ -31,6 +31,10 @@ constexpr const char* table = R"json([
  "style": {"sizeMode": "world", "edl": {"enabled": false}}},
 {"name": "adaptive", "about": "circles as wide as the spacing of the finest node where they lie, no lighting", "sweep": true,
  "style": {"sizeMode": "adaptive", "edl": {"enabled": false}}},
+{"name": "splats", "about": "high-quality splats of 3 pixels, no lighting", "sweep": true,
+ "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}}},
+{"name": "splats-adaptive", "about": "high-quality splats as wide as the spacing of the finest node, no lighting", "sweep": true,
+ "style": {"sizeMode": "adaptive", "minSizePixels": 2, "splats": {"enabled": true}, "edl": {"enabled": false}}},
 {"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
@@ -39,6 +43,8 @@ constexpr const char* table = R"json([
  "style": {"detail": {"mode": "continuous"}}},
 {"name": "gles-adaptive", "about": "adaptive, with OpenGL ES", "backend": "gles",
  "style": {"sizeMode": "adaptive", "edl": {"enabled": false}}},
+{"name": "gles-splats", "about": "splats, with OpenGL ES", "backend": "gles",
+ "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}}},
 {"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
 ])json";

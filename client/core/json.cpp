@@ -73,6 +73,12 @@ void readDetail(FieldReader& fields, Detail& detail) {
     fields.number("peripheralDensity", detail.peripheralDensity, 0.01, 1);
 }
 
+void readSplats(FieldReader& fields, Splats& splats) {
+    fields.flag("enabled", splats.enabled);
+    fields.number("hardness", splats.hardness, 1, 16);
+    fields.number("depthFactor", splats.depthFactor, 0, 1);
+}
+
 void readEdl(FieldReader& fields, EyeDomeLighting& edl) {
     fields.flag("enabled", edl.enabled);
     fields.number("neighbours", edl.neighbours, 4, 8);
@@ -131,6 +137,7 @@ Result<Style> detail::readStyle(const json& value, const Style& base) {
     if (style.minSizePixels > style.maxSizePixels)
         fields.fail("minSizePixels", "must not exceed maxSizePixels");
     fields.choice("shape", style.shape, shapes);
+    fields.object("splats", [&](FieldReader& splats) { readSplats(splats, style.splats); });
     fields.object("detail", [&](FieldReader& detail) { readDetail(detail, style.detail); });
     fields.object("edl", [&](FieldReader& edl) { readEdl(edl, style.edl); });
     fields.bytes("background", style.background);
@@ -184,6 +191,9 @@ json toJson(const Style& style) {
                 {"neighbours", style.edl.neighbours},
                 {"radiusPixels", style.edl.radiusPixels},
                 {"strength", style.edl.strength}};
+    json splats = {{"enabled", style.splats.enabled},
+                   {"hardness", style.splats.hardness},
+                   {"depthFactor", style.splats.depthFactor}};
     json detail = {{"mode", nameOf(detailModes, style.detail.mode)},
                    {"spacingPixels", style.detail.spacingPixels},
                    {"growthRange", style.detail.growthRange},
@@ -200,6 +210,7 @@ json toJson(const Style& style) {
             {"minSizePixels", style.minSizePixels},
             {"maxSizePixels", style.maxSizePixels},
             {"shape", nameOf(shapes, style.shape)},
+            {"splats", splats},
             {"detail", detail},
             {"edl", edl},
             {"background", style.background}};

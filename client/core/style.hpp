@@ -43,6 +43,17 @@ struct Detail {
     friend bool operator==(const Detail&, const Detail&) = default;
 };
 
+// High-quality splats (Botsch et al. 2005; Potree thesis §4.2.2): what lies about as near as a pixel's
+// nearest point is blended, each point by (1 - (distance from its middle / radius)²)^hardness, instead of
+// showing the nearest alone. About as near: within the blend depth, radius + depthFactor × view distance
+// (UnityPIC eq. 5).
+struct Splats {
+    bool enabled = false;
+    int hardness = 2;           // 1..16; the higher, the sharper the bounds between points
+    double depthFactor = 0.001; // 0..1
+    friend bool operator==(const Splats&, const Splats&) = default;
+};
+
 struct Style {
     ColourMode colourMode = ColourMode::rgb;
     GradientName gradient = GradientName::viridis; // of intensity and elevation
@@ -56,6 +67,7 @@ struct Style {
     double sizeSpacings = 1.5;
     double minSizePixels = 1, maxSizePixels = 64;
     PointShape shape = PointShape::circle;
+    Splats splats;
     Detail detail;
     EyeDomeLighting edl;
     std::array<std::uint8_t, 3> background{24, 26, 30};

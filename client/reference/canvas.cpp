@@ -22,6 +22,16 @@ double inside(const Mark& mark, double dx, double dy, PointShape shape) {
     return holdsMiddle;
 }
 
+// The last of it: a pixel that only its point's place covers shows that point all the same.
+double weightAt(const Mark& mark, double away, const Splats& splats) {
+    double share = 2 * away / mark.diameter;
+    return std::pow(std::max(0.0, 1 - share * share), splats.hardness) + 1.0 / 65536;
+}
+
+double blendDepth(const Mark& mark, const Splats& splats) {
+    return mark.diameter / 2 * mark.unitsPerPixel + splats.depthFactor * mark.distance;
+}
+
 } // namespace
 
 Canvas::Canvas(int width, int height, int samples)
@@ -32,13 +42,15 @@ Canvas::Canvas(int width, int height, int samples)
     colours_.resize(count);
 }
 
-std::uint64_t Canvas::bytesFor(int width, int height, int samples) {
-    constexpr std::uint64_t sampleBytes = sizeof(double) + sizeof(std::uint64_t) + sizeof(Colour);
+std::uint64_t Canvas::bytesFor(int width, int height, int samples, bool splats) {
+    std::uint64_t sampleBytes = sizeof(double) + sizeof(std::uint64_t) + sizeof(Colour) +
+                                (splats ? sizeof(std::array<double, 4>) : 0);
     return sampleBytes * static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height) *
            static_cast<std::uint64_t>(samples) * static_cast<std::uint64_t>(samples);
 }
 
-// visit(sample, how far inside) for all samples that lie inside the mark grown by `slack` pixels.
+// visit(sample, how far inside, distance from the middle) for all samples that lie inside the mark grown by
+// `slack` pixels.
 template <class Visit>
 void Canvas::visitSamples(const Mark& mark, PointShape shape, double slack, const Visit& visit) const {
     double reach = std::max(mark.diameter / 2, 0.5) + slack;
@@ -52,16 +64,16 @@ void Canvas::visitSamples(const Mark& mark, PointShape shape, double slack, cons
     };
     for (int row = first(mark.y, rows_); row <= last(mark.y, rows_); ++row)
         for (int column = first(mark.x, columns_); column <= last(mark.x, columns_); ++column) {
-            double depth =
-                inside(mark, (column + 0.5) / samples_ - mark.x, (row + 0.5) / samples_ - mark.y, shape);
+            double dx = (column + 0.5) / samples_ - mark.x, dy = (row + 0.5) / samples_ - mark.y;
+            double depth = inside(mark, dx, dy, shape);
             if (depth > -slack)
-                visit(at(column, row), depth);
+                visit(at(column, row), depth, std::hypot(dx, dy));
         }
 }
 
 void Canvas::draw(std::span<const Mark> marks, PointShape shape) {
     for (const Mark& mark : marks)
-        visitSamples(mark, shape, 0, [&](std::size_t sample, double) {
+        visitSamples(mark, shape, 0, [&](std::size_t sample, double, double) {
             double held = distances_[sample];
             if (mark.distance > held || (mark.distance == held && mark.order > orders_[sample]))
                 return;
@@ -71,16 +83,61 @@ void Canvas::draw(std::span<const Mark> marks, PointShape shape) {
         });
 }
 
-void Canvas::doubt(std::span<const Mark> marks, PointShape shape, const Slack& slack) {
-    doubtful_.resize(distances_.size());
+void Canvas::blend(std::span<const Mark> marks, const Style& style) {
+    sums_.resize(distances_.size());
     for (const Mark& mark : marks)
-        visitSamples(mark, shape, slack.pixels, [&](std::size_t sample, double depth) {
+        visitSamples(mark, style.shape, 0, [&](std::size_t sample, double, double away) {
+            if (mark.distance - blendDepth(mark, style.splats) > distances_[sample])
+                return;
+            double weight = weightAt(mark, away, style.splats);
+            for (std::size_t c = 0; c < 3; ++c)
+                sums_[sample][c] += weight * double{mark.colour[c]};
+            sums_[sample][3] += weight;
+        });
+}
+
+void Canvas::doubt(std::span<const Mark> marks, const Style& style, const Slack& slack) {
+    doubtful_.resize(distances_.size());
+    swings_.resize(sums_.size());
+    for (const Mark& mark : marks)
+        visitSamples(mark, style.shape, slack.pixels, [&](std::size_t sample, double depth, double away) {
+            double nearest = distances_[sample];
+            if (style.splats.enabled) {
+                doubtBlend(mark, sample, depth, away, style.splats, slack);
+                return;
+            }
             bool shown = orders_[sample] == mark.order;
             bool mightLeave = shown && depth < slack.pixels;
-            bool mightCome = !shown && mark.distance < distances_[sample] * (1 + slack.distance);
+            bool mightCome = !shown && mark.distance < nearest * (1 + slack.distance);
             if (mightLeave || mightCome)
                 doubtful_[sample] = true;
         });
+}
+
+// What a sample shows changes at once where its nearest point does, or where one comes within the blend
+// depth; and little by little with the weights.
+void Canvas::doubtBlend(const Mark& mark, std::size_t sample, double depth, double away, const Splats& splats,
+                        const Slack& slack) {
+    double nearest = distances_[sample];
+    bool movesNearest = std::abs(depth) < slack.pixels && mark.distance < nearest * (1 + slack.distance);
+    double beyond = mark.distance - blendDepth(mark, splats) - nearest;
+    bool mightBlend =
+        std::abs(beyond) < 2 * slack.distance * mark.distance + slack.pixels * mark.unitsPerPixel;
+    if (movesNearest || mightBlend)
+        doubtful_[sample] = true;
+    if (beyond > 0 || !(sums_[sample][3] > 0))
+        return;
+    double change = weightAt(mark, std::max(0.0, away - slack.pixels), splats) -
+                    weightAt(mark, away + slack.pixels, splats);
+    if (std::abs(depth) < slack.pixels) // it might come or go
+        change = std::max(change, 2 * weightAt(mark, away, splats));
+    double apart = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+        apart = std::max(apart, std::abs(double{mark.colour[c]} - sums_[sample][c] / sums_[sample][3]));
+    constexpr double weightStep = 1.0 / 65536; // renderers round weights to it
+    swings_[sample] += (change / 2 + weightStep) * apart / sums_[sample][3];
+    if (swings_[sample] > slack.levels)
+        doubtful_[sample] = true;
 }
 
 // visit(sample) for the neighbours of eye-dome lighting, whole pixels away.
@@ -106,6 +163,15 @@ double Canvas::shadeOf(const EyeDomeLighting& edl, int x, int y) const {
     return std::exp(-sum / edl.neighbours * 300 * edl.strength);
 }
 
+Colour Canvas::colourAt(std::size_t sample) const {
+    if (sums_.empty())
+        return colours_[sample];
+    Colour mean;
+    for (std::size_t c = 0; c < 3; ++c)
+        mean[c] = static_cast<float>(sums_[sample][c] / sums_[sample][3]);
+    return mean;
+}
+
 DepthImage Canvas::finish(const Style& style) const {
     DepthImage result;
     result.image = {columns_ / samples_, rows_ / samples_, {}};
@@ -117,8 +183,9 @@ DepthImage Canvas::finish(const Style& style) const {
                 for (int sx = x; sx < x + samples_; ++sx) {
                     bool covered = distances_[at(sx, sy)] < nothing;
                     double shade = covered && style.edl.enabled ? shadeOf(style.edl, sx, sy) : 1;
+                    Colour colour = covered ? colourAt(at(sx, sy)) : Colour{};
                     for (std::size_t c = 0; c < 3; ++c)
-                        sum[c] += covered ? double{colours_[at(sx, sy)][c]} * shade : style.background[c];
+                        sum[c] += covered ? double{colour[c]} * shade : style.background[c];
                     nearest = std::min(nearest, distances_[at(sx, sy)]);
                 }
             for (double levels : sum)

@@ -2,7 +2,7 @@
 // its centre, as the renderers do. More give the picture that the mean of so many shifted ones would: a
 // pixel's colour is the mean of its samples' levels (a box filter), its distance the nearest of theirs.
 //
-// Memory: 28 bytes a sample.
+// Memory: 28 bytes a sample, with splats 60.
 #pragma once
 
 #include "client/reference/marks.hpp"
@@ -15,6 +15,7 @@ namespace stipple::reference {
 // How far a mark might be off, for pictures that are compared pixel by pixel.
 struct Slack {
     double pixels = 0.01;
+    double levels = 2;      // splats: how much the mean may move with its weights
     double distance = 4e-6; // relative: 2^-18, the coarsest depth step of a range of 32 octaves
 };
 
@@ -22,14 +23,18 @@ class Canvas {
   public:
     Canvas(int width, int height, int samples = 1);
 
-    static std::uint64_t bytesFor(int width, int height, int samples);
+    static std::uint64_t bytesFor(int width, int height, int samples, bool splats = false);
 
     // Draws marks over what is there; their order of arrival makes no difference. Thread: one at a time.
     void draw(std::span<const Mark> marks, PointShape shape);
 
+    // High-quality splats: after all marks are drawn, and with all of them again. finish() then shows the
+    // mean of those within their blend depth of the nearest (client/core/style.hpp).
+    void blend(std::span<const Mark> marks, const Style& style);
+
     // Marks the samples that would show another mark if those of `marks` were moved, grew or came nearer by
     // `slack`. Once all marks are drawn, with all of them; what finish() answers then is in doubt there.
-    void doubt(std::span<const Mark> marks, PointShape shape, const Slack& slack);
+    void doubt(std::span<const Mark> marks, const Style& style, const Slack& slack);
 
     // The picture, with background and eye-dome lighting.
     DepthImage finish(const Style& style) const;
@@ -41,6 +46,9 @@ class Canvas {
     void visitSamples(const Mark& mark, PointShape shape, double slack, const Visit& visit) const;
     template <class Visit>
     void visitNeighbours(const EyeDomeLighting& edl, int x, int y, const Visit& visit) const;
+    void doubtBlend(const Mark& mark, std::size_t sample, double depth, double away, const Splats& splats,
+                    const Slack& slack);
+    Colour colourAt(std::size_t sample) const;
     double shadeOf(const EyeDomeLighting& edl, int x, int y) const;
     std::size_t at(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x);
@@ -50,7 +58,9 @@ class Canvas {
     std::vector<double> distances_; // infinite where there is no mark
     std::vector<std::uint64_t> orders_;
     std::vector<Colour> colours_;
-    std::vector<bool> doubtful_; // empty before doubt()
+    std::vector<std::array<double, 4>> sums_; // weighted colours, weights; empty before blend()
+    std::vector<bool> doubtful_;              // empty before doubt()
+    std::vector<double> swings_;              // splats: how far the weights of doubt() move a colour, levels
 };
 
 } // namespace stipple::reference

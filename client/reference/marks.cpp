@@ -146,7 +146,8 @@ void appendMarks(const View& view, const Style& style, const Points& points, std
         double diameter = diameterOf(style, view, at.distance, spacing), reach = diameter / 2 + 1;
         if (at.x + reach < 0 || at.y + reach < 0 || at.x - reach > view.width || at.y - reach > view.height)
             continue;
-        marks.push_back({at.x, at.y, at.distance, diameter, points.firstOrder + i, colours[i]});
+        marks.push_back({at.x, at.y, at.distance, diameter, points.firstOrder + i, colours[i],
+                         1 / view.pixelsPerUnitAt(at.distance)});
     }
 }
 

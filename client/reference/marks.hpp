@@ -32,6 +32,7 @@ struct Mark {
     double diameter = 1;     // pixels
     std::uint64_t order = 0; // of two equally near marks the one of smaller order is in front
     Colour colour{};
+    double unitsPerPixel = 0; // world units that a pixel spans at that distance
 };
 
 // Names of the attributes that the colours of a style need of a cloud; those it lacks are left out.

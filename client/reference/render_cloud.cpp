@@ -31,8 +31,14 @@ std::vector<int> attributesFor(std::span<const Job> jobs, const CloudMetadata& m
     return {indices.begin(), indices.end()};
 }
 
-// Reads the cloud once and draws it on every easel. `read` counts points.
-Status drawAll(CloudReader& reader, std::vector<std::unique_ptr<Easel>>& easels,
+enum class Reading { nearest, blend };
+
+bool wants(const Job& job, Reading reading) {
+    return reading == Reading::nearest || job.style.splats.enabled;
+}
+
+// Reads the cloud once and draws it on every easel that wants it. `read` counts points.
+Status drawAll(CloudReader& reader, Reading reading, std::vector<std::unique_ptr<Easel>>& easels,
                std::span<const int> attributes, int threads, const std::function<void(std::uint64_t)>& read) {
     const CloudMetadata& metadata = reader.metadata();
     Points shared;
@@ -54,10 +60,15 @@ Status drawAll(CloudReader& reader, std::vector<std::unique_ptr<Easel>>& easels,
             points.spacings = finest->spacingsAt(batch);
         std::vector<Mark> marks;
         for (auto& easel : easels) {
+            if (!wants(easel->job, reading))
+                continue;
             marks.clear();
             appendMarks(easel->job.view, easel->job.style, points, marks);
             std::lock_guard lock(easel->mutex);
-            easel->canvas.draw(marks, easel->job.style.shape);
+            if (reading == Reading::nearest)
+                easel->canvas.draw(marks, easel->job.style.shape);
+            else
+                easel->canvas.blend(marks, easel->job.style);
         }
         read(batch.size());
     });
@@ -78,7 +89,7 @@ std::size_t groupSize(std::span<const Job> jobs, std::uint64_t memoryBytes) {
     std::uint64_t bytes = 0;
     std::size_t count = 0;
     for (const Job& job : jobs) {
-        bytes += Canvas::bytesFor(job.view.width, job.view.height, job.samples);
+        bytes += Canvas::bytesFor(job.view.width, job.view.height, job.samples, job.style.splats.enabled);
         if (count > 0 && bytes > memoryBytes)
             break;
         ++count;
@@ -86,11 +97,18 @@ std::size_t groupSize(std::span<const Job> jobs, std::uint64_t memoryBytes) {
     return count;
 }
 
-std::size_t groupsOf(std::span<const Job> jobs, std::uint64_t memoryBytes) {
-    std::size_t groups = 0;
-    for (; !jobs.empty(); ++groups)
-        jobs = jobs.subspan(groupSize(jobs, memoryBytes));
-    return groups;
+bool anyBlends(std::span<const Job> jobs) {
+    return std::any_of(jobs.begin(), jobs.end(), [](const Job& job) { return wants(job, Reading::blend); });
+}
+
+std::size_t readingsOf(std::span<const Job> jobs, std::uint64_t memoryBytes) {
+    std::size_t readings = 0;
+    while (!jobs.empty()) {
+        std::size_t group = groupSize(jobs, memoryBytes);
+        readings += anyBlends(jobs.first(group)) ? 2 : 1;
+        jobs = jobs.subspan(group);
+    }
+    return readings;
 }
 
 } // namespace
@@ -101,7 +119,7 @@ Result<std::vector<DepthImage>> renderCloud(ByteSource& source, std::span<const 
     STIPPLE_TRY(reader, CloudReader::open(source));
     int threads = options.threads > 0 ? options.threads
                                       : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    std::uint64_t total = reader->metadata().pointCount * groupsOf(jobs, options.memoryBytes);
+    std::uint64_t total = reader->metadata().pointCount * readingsOf(jobs, options.memoryBytes);
     std::atomic<std::uint64_t> done{0};
     std::mutex reporting;
     auto read = [&](std::uint64_t points) {
@@ -118,7 +136,10 @@ Result<std::vector<DepthImage>> renderCloud(ByteSource& source, std::span<const 
         std::vector<std::unique_ptr<Easel>> easels;
         for (const Job& job : group)
             easels.push_back(std::make_unique<Easel>(job));
-        STIPPLE_CHECK(drawAll(*reader, easels, attributesFor(group, reader->metadata()), threads, read));
+        std::vector<int> attributes = attributesFor(group, reader->metadata());
+        STIPPLE_CHECK(drawAll(*reader, Reading::nearest, easels, attributes, threads, read));
+        if (anyBlends(group))
+            STIPPLE_CHECK(drawAll(*reader, Reading::blend, easels, attributes, threads, read));
         for (const auto& easel : easels)
             pictures.push_back(easel->canvas.finish(easel->job.style));
     }

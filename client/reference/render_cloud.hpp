@@ -6,8 +6,8 @@
 // Where a new way to draw goes: sizes and colours into marks, shapes and what is done with several marks on a
 // pixel into canvas; `referenceVersion` grows.
 //
-// The cloud is read node by node, all pictures of one reading at once; memory is that of the pictures
-// (Canvas::bytesFor), of which so many are drawn at a time as `memoryBytes` holds, at least one.
+// The cloud is read node by node, all pictures of one reading at once (twice for splats); memory is that of
+// the pictures (Canvas::bytesFor), of which so many are drawn at a time as `memoryBytes` holds, at least one.
 #pragma once
 
 #include "client/reference/canvas.hpp"

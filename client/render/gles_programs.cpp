@@ -13,6 +13,8 @@ std::string definesFor(const PointVariant& variant) {
     std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
     defines += variant.lowWords ? "#define LOW_WORDS\n" : "";
     defines += variant.circle ? "#define CIRCLE\n" : "";
+    defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
+    defines += variant.blend ? "#define BLEND\n" : "";
     defines += variant.captureLevels ? "#define CAPTURE_LEVELS\n" : "";
     if (variant.adaptive)
         defines += cat("#define ADAPTIVE\n#define OCTREE_WIDTH ", octreeTextureWidth, "\n");
@@ -39,7 +41,8 @@ Result<const PointProgram*> PointPrograms::get(const PointVariant& variant) {
 }
 
 Result<PointProgram> PointProgram::make(const PointVariant& variant) {
-    std::string vertex = cat(variant.adaptive ? shader_texts::octree : "", shader_texts::pointsVertex);
+    std::string vertex =
+        cat(variant.adaptive ? shader_texts::octree : "", shader_texts::sprite, shader_texts::pointsVertex);
     STIPPLE_TRY(program, makeProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
                                      variant.captureLevels ? "vLevels" : nullptr));
     PointProgram made;
@@ -79,6 +82,10 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.octreePlace = at("uOctreePlace");
     made.nodeBits = at("uNodeBits");
     made.nodeSize64 = at("uNodeSize64");
+    made.radiusScale = at("uRadiusScale");
+    made.blendFactor = at("uBlendFactor");
+    made.nearest = at("uNearest");
+    made.hardness = at("uHardness");
     made.program = std::move(program);
     return made;
 }
@@ -96,6 +103,10 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform2f(sizeRange64, static_cast<float>(frame.minSize64), static_cast<float>(frame.maxSize64));
     glUniform1i(gradient, gradientUnit);
     glUniform1i(octree, octreeUnit);
+    glUniform1f(radiusScale, frame.radiusScale);
+    glUniform1f(blendFactor, frame.blendFactor);
+    glUniform1i(nearest, nearestUnit);
+    glUniform1i(hardness, frame.hardness);
     glUniform1i(continuous, frame.continuous);
     glUniform1f(growth, frame.growth);
     glUniform2f(falloff, frame.falloffX, frame.falloffY);
@@ -130,12 +141,14 @@ void PointProgram::setOctreePlace(std::uint32_t place, const ResidentNode& node)
     glUniform1i(nodeBits, node.nodeBits);
 }
 
-Result<ResolveProgram> ResolveProgram::make() {
-    STIPPLE_TRY(program, makeProgram("", shader_texts::resolveVertex, shader_texts::resolveFragment));
+Result<ResolveProgram> ResolveProgram::make(bool splats) {
+    STIPPLE_TRY(program, makeProgram(splats ? "#define SPLATS\n" : "", shader_texts::resolveVertex,
+                                     shader_texts::resolveFragment));
     ResolveProgram made;
     auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
     made.colour = at("uColour");
     made.depth = at("uDepth");
+    made.background = at("uBackground");
     made.nearBits = at("uNearBits");
     made.depthShift = at("uDepthShift");
     made.neighbours = at("uNeighbours");
@@ -145,10 +158,13 @@ Result<ResolveProgram> ResolveProgram::make() {
     return made;
 }
 
-void ResolveProgram::useFor(const RasterFrame& frame, const EdlSetup& edl) const {
+void ResolveProgram::useFor(const RasterFrame& frame, const EdlSetup& edl,
+                            const std::array<std::uint8_t, 3>& backgroundColour) const {
     glUseProgram(program.id());
     glUniform1i(colour, 0);
     glUniform1i(depth, 1);
+    glUniform3f(background, backgroundColour[0] / 255.0f, backgroundColour[1] / 255.0f,
+                backgroundColour[2] / 255.0f);
     glUniform1ui(nearBits, frame.nearBits);
     glUniform1i(depthShift, frame.depthShift);
     glUniform1i(neighbours, edl.enabled ? edl.neighbours : 0);

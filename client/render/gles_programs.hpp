@@ -4,6 +4,7 @@
 #include "client/render/gles_objects.hpp"
 #include "client/render/raster_setup.hpp"
 
+#include <array>
 #include <map>
 
 namespace stipple::gles {
@@ -13,6 +14,7 @@ struct PointVariant {
     bool lowWords = false; // nodes with a third position word
     bool circle = false;
     bool adaptive = false;
+    bool blend = false;         // the pass of splats that blends
     bool captureLevels = false; // adaptive; vLevels goes to transform feedback
 
     friend auto operator<=>(const PointVariant&, const PointVariant&) = default;
@@ -20,7 +22,7 @@ struct PointVariant {
 };
 
 // Texture units of the point programs.
-inline constexpr int gradientUnit = 0, octreeUnit = 1;
+inline constexpr int gradientUnit = 0, octreeUnit = 1, nearestUnit = 2;
 
 // points.vert.glsl + points.frag.glsl with one set of defines, and where its uniforms are.
 struct PointProgram {
@@ -32,6 +34,7 @@ struct PointProgram {
     GLint rank, continuous, growth, falloff, leastDensity, sizeByDensity;
 
     GLint octree, octreePlace, nodeBits, nodeSize64;
+    GLint radiusScale, blendFactor, nearest, hardness;
 
     static Result<PointProgram> make(const PointVariant& variant);
     void useFor(const RasterFrame& frame) const;
@@ -51,10 +54,12 @@ class PointPrograms {
 
 struct ResolveProgram {
     Program program;
-    GLint colour, depth, nearBits, depthShift, neighbours, offsets, power;
+    GLint colour, depth, background, nearBits, depthShift, neighbours, offsets, power;
 
-    static Result<ResolveProgram> make();
-    void useFor(const RasterFrame& frame, const EdlSetup& edl) const;
+    // `splats`: from sums of weighted colours.
+    static Result<ResolveProgram> make(bool splats);
+    void useFor(const RasterFrame& frame, const EdlSetup& edl,
+                const std::array<std::uint8_t, 3>& backgroundColour) const;
 };
 
 } // namespace stipple::gles

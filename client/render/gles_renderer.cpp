@@ -18,6 +18,10 @@ namespace {
 
 using namespace gles;
 
+constexpr std::string_view withoutFloats =
+    "this graphics driver can't blend into floating-point colours (EXT_color_buffer_float): points are drawn "
+    "without high-quality splats";
+
 constexpr float levelsInv = 1.0f / 255.0f;
 
 // Whether points can go straight to the framebuffer that is bound: one sample a pixel, 24 bits of depth.
@@ -38,13 +42,16 @@ bool takesPointsDirectly(unsigned target) {
 
 class Gles3Renderer final : public GlesRenderer {
   public:
-    Status init() {
+    Status init(FloatBlending most) {
+        floatBlending_ = std::min(most, floatBlending());
         // What does not compile is told at once.
         for (bool lowWords : {false, true})
             for (bool circle : {false, true})
                 STIPPLE_CHECK(compile({.lowWords = lowWords, .circle = circle}));
-        STIPPLE_TRY(resolve, ResolveProgram::make());
+        STIPPLE_TRY(resolve, ResolveProgram::make(false));
         resolve_ = std::move(resolve);
+        STIPPLE_TRY(resolveSums, ResolveProgram::make(true));
+        resolveSums_ = std::move(resolveSums);
         makeTexture(gradient_, GL_RGBA8, gradientEntries, 1);
         emptyArray_.make();
         return checkGl("preparing to draw");
@@ -54,16 +61,24 @@ class Gles3Renderer final : public GlesRenderer {
         STIPPLE_CHECK(checkSize(plan));
         RasterFrame frame = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
-        bool direct = !edl.enabled && directTo(target);
+        bool blends = frame.splats && floatBlending_ != FloatBlending::none;
+        limitation_ = frame.splats && !blends ? withoutFloats : "";
+        bool direct = !edl.enabled && !blends && directTo(target);
         if (!direct)
             STIPPLE_CHECK(points_.resize(plan.width, plan.height));
 
         glBindFramebuffer(GL_FRAMEBUFFER, direct ? target : points_.framebuffer.id());
         STIPPLE_CHECK(drawPoints(plan, frame));
         plan.counters.passesRun += 1;
+        if (blends) {
+            STIPPLE_CHECK(blend(plan, frame));
+            plan.counters.passesRun += 1;
+        } else {
+            sums_ = SumTarget();
+        }
         if (!direct) {
             glBindFramebuffer(GL_FRAMEBUFFER, target);
-            resolve(frame, edl);
+            resolve(plan, frame, edl, blends);
             plan.counters.passesRun += 1;
         }
         plan.counters.passesSkipped += edl.enabled ? 0 : 1;
@@ -83,8 +98,10 @@ class Gles3Renderer final : public GlesRenderer {
     }
 
     std::uint64_t gpuBytes() const override {
-        return nodes_.bytes() + points_.bytes() + octree_.bytes() + 4ull * gradientEntries;
+        return nodes_.bytes() + points_.bytes() + sums_.bytes() + octree_.bytes() + 4ull * gradientEntries;
     }
+
+    std::string_view limitation() const override { return limitation_; }
 
   private:
     Status compile(const PointVariant& variant) {
@@ -137,11 +154,30 @@ class Gles3Renderer final : public GlesRenderer {
         glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
         glClearDepthf(1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        return drawNodes(plan, frame);
+        return drawNodes(plan, frame, false);
+    }
+
+    // The second pass of splats, over the depths of the first.
+    Status blend(const FramePlan& plan, const RasterFrame& frame) {
+        STIPPLE_CHECK(sums_.resize(plan.width, plan.height, floatBlending_));
+        glBindFramebuffer(GL_FRAMEBUFFER, sums_.framebuffer.id());
+        glClearColor(0, 0, 0, 0);
+        glClear(GL_COLOR_BUFFER_BIT);
+        glDisable(GL_DEPTH_TEST);
+        glEnable(GL_BLEND);
+        glBlendEquation(GL_FUNC_ADD);
+        glBlendFunc(GL_ONE, GL_ONE);
+        glActiveTexture(GL_TEXTURE0 + nearestUnit);
+        glBindTexture(GL_TEXTURE_2D, points_.depth.id());
+        Status drawn = drawNodes(plan, frame, true);
+        glActiveTexture(GL_TEXTURE0 + nearestUnit);
+        glBindTexture(GL_TEXTURE_2D, 0);
+        glDisable(GL_BLEND);
+        return drawn;
     }
 
     // All points, into what is bound.
-    Status drawNodes(const FramePlan& plan, const RasterFrame& frame) {
+    Status drawNodes(const FramePlan& plan, const RasterFrame& frame, bool blends) {
         if (frame.adaptive)
             octree_.load(plan);
         else
@@ -155,7 +191,9 @@ class Gles3Renderer final : public GlesRenderer {
         const PointProgram* inUse = nullptr;
         for (std::size_t index : drawOrder(plan)) {
             const DrawNode& node = plan.nodes[index];
-            STIPPLE_TRY(program, pointPrograms_.get(PointVariant::of(frame, *node.node)));
+            PointVariant variant = PointVariant::of(frame, *node.node);
+            variant.blend = blends;
+            STIPPLE_TRY(program, pointPrograms_.get(variant));
             if (program != inUse)
                 program->useFor(frame);
             inUse = program;
@@ -169,14 +207,14 @@ class Gles3Renderer final : public GlesRenderer {
         return {};
     }
 
-    void resolve(const RasterFrame& frame, const EdlSetup& edl) {
+    void resolve(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl, bool blends) {
         glViewport(0, 0, frame.width, frame.height);
         glDisable(GL_DEPTH_TEST);
-        resolve_.useFor(frame, edl);
+        (blends ? resolveSums_ : resolve_).useFor(frame, edl, plan.style.background);
         glActiveTexture(GL_TEXTURE1);
         glBindTexture(GL_TEXTURE_2D, points_.depth.id());
         glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, points_.colour.id());
+        glBindTexture(GL_TEXTURE_2D, blends ? sums_.sums.id() : points_.colour.id());
         glBindVertexArray(emptyArray_.id());
         glDrawArrays(GL_TRIANGLES, 0, 3);
         // A texture may not stay readable while the next frame draws into it.
@@ -187,11 +225,14 @@ class Gles3Renderer final : public GlesRenderer {
 
     PointPrograms pointPrograms_;
     OctreeTexture octree_;
-    ResolveProgram resolve_;
+    ResolveProgram resolve_, resolveSums_;
     Texture gradient_;
     std::optional<GradientName> loadedGradient_;
     VertexArray emptyArray_;
     PointTarget points_;
+    SumTarget sums_; // splats
+    FloatBlending floatBlending_ = FloatBlending::none;
+    std::string_view limitation_;
     NodeBuffers nodes_;
     DepthReader depthReader_;
     std::optional<bool> defaultIsDirect_;
@@ -199,9 +240,9 @@ class Gles3Renderer final : public GlesRenderer {
 
 } // namespace
 
-Result<std::unique_ptr<GlesRenderer>> GlesRenderer::create() {
+Result<std::unique_ptr<GlesRenderer>> GlesRenderer::create(gles::FloatBlending mostBlending) {
     auto renderer = std::make_unique<Gles3Renderer>();
-    STIPPLE_CHECK(renderer->init());
+    STIPPLE_CHECK(renderer->init(mostBlending));
     return std::unique_ptr<GlesRenderer>(std::move(renderer));
 }
 

@@ -6,14 +6,22 @@
 #include "shared/base/result.hpp"
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 namespace stipple {
 
+namespace gles {
+// What of floating-point colour buffers a context can blend into: nothing, 16 bits, 32 bits.
+enum class FloatBlending { none, half, full };
+} // namespace gles
+
 class GlesRenderer {
   public:
     // unsupported: the context lacks a feature that is needed, or a shader does not compile (with its log).
-    static Result<std::unique_ptr<GlesRenderer>> create();
+    // `mostBlending`: to try what happens where a context has less.
+    static Result<std::unique_ptr<GlesRenderer>>
+    create(gles::FloatBlending mostBlending = gles::FloatBlending::full);
     virtual ~GlesRenderer() = default; // frees every GL object; the context must still be current
 
     // Draws into framebuffer `target` (0: the default one), plan.width × plan.height. Uploads nodes it has
@@ -23,6 +31,9 @@ class GlesRenderer {
     // is none. Draws the points once more, into a buffer of its own, and waits for the GPU: for measuring.
     virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
     virtual std::uint64_t gpuBytes() const = 0;
+    // What the last plan asked for that this context can't do, and what was drawn instead: a sentence. Empty:
+    // nothing.
+    virtual std::string_view limitation() const = 0;
 };
 
 } // namespace stipple

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/render/gles_objects.hpp"
+#include "client/render/gles_renderer.hpp"
 
 #include <cstdint>
 
@@ -23,6 +24,23 @@ struct PointTarget {
 
     // Error: unsupported, where the driver refuses such buffers.
     Status resize(int newWidth, int newHeight);
+};
+
+FloatBlending floatBlending(); // of the current context
+
+// Sums of weighted colours, and of weights in alpha.
+struct SumTarget {
+    Framebuffer framebuffer;
+    Texture sums;
+    int width = 0, height = 0;
+    FloatBlending kind = FloatBlending::none;
+
+    std::uint64_t bytes() const {
+        return (kind == FloatBlending::full ? 16ull : 8ull) * static_cast<unsigned>(width) *
+               static_cast<unsigned>(height);
+    }
+    // `wanted` is not none. Error: unsupported, where the driver refuses such a buffer.
+    Status resize(int newWidth, int newHeight, FloatBlending wanted);
 };
 
 } // namespace stipple::gles

@@ -138,6 +138,10 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     frame.sizeByDistance = style.sizeMode == PointSizeMode::world && frame.perspective;
     frame.worldSize64 = static_cast<float>(pixels * sizeSteps);
     frame.size64 = std::clamp(sizeStepsOf(pixels), frame.minSize64, frame.maxSize64);
+    frame.radiusScale = static_cast<float>(0.5 / sizeSteps / focalOf(plan).y);
+    frame.splats = style.splats.enabled;
+    frame.hardness = style.splats.hardness;
+    frame.blendFactor = static_cast<float>(style.splats.depthFactor);
     setDetail(plan, frame);
     frame.adaptive = style.sizeMode == PointSizeMode::adaptive;
     bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;

@@ -34,6 +34,13 @@
 //            piecewise linear logarithm, monotone, without rounding, under 2^24. The depth buffer holds
 //            q / 2^24. The nearer step wins; among equal steps the point that comes first in drawOrder().
 //            The logarithm of frame_plan.hpp is this one made smooth; eye-dome lighting takes it from q.
+// Splats     the nearest points are drawn first. Then each pixel's colour is the mean of the points that
+// cover it and
+//            whose blended step is not beyond the nearest one's, weighted by w = (1 - r² / R²)^hardness from
+//            its centre's distance r from the point, where R is half the size: floor(65535 max(w, 0)) + 1.
+//            With d of the point's step, the blended step is that of
+//              d - (radius + factor · d), at least near      radius = size64 · radiusScale · d; orthographic:
+//                                                            without "d"
 #pragma once
 
 #include "client/core/frame_plan.hpp"
@@ -83,8 +90,12 @@ struct RasterFrame {
     int size64 = 64;             // 1/64 pixel, clamped
     float worldSize64 = 0;       // 1/64 pixel at distance 1
     int minSize64 = 64, maxSize64 = 64;
-    bool adaptive = false;   // see "Adaptive"; size64 does not matter
-    bool circle = false;     // false where every point is a single pixel
+    bool adaptive = false; // see "Adaptive"; size64 does not matter
+    bool circle = false;   // false where every point is a single pixel
+    float radiusScale = 0; // half the size in world units, per 1/64 pixel; at distance 1 in perspective
+    bool splats = false;   // see "Splats"
+    int hardness = 1;
+    float blendFactor = 0;
     bool continuous = false; // continuous detail, see "Detail"
     float growth = 0;
     float falloffX = 0, falloffY = 0,
@@ -112,6 +123,15 @@ struct RasterNode {
 // The view distance at which a depth step begins.
 inline float distanceOfStep(const RasterFrame& frame, std::uint32_t step) {
     return floatOfBits((step << frame.depthShift) + frame.nearBits);
+}
+
+// See "Splats". size64: the point's.
+inline std::uint32_t blendedStep(const RasterFrame& frame, std::uint32_t step, int size64) {
+    float distance = distanceOfStep(frame, step);
+    float radius = static_cast<float>(size64) * frame.radiusScale;
+    radius = frame.perspective ? radius * distance : radius;
+    float back = distance - (radius + frame.blendFactor * distance);
+    return (floatBits(back > frame.near ? back : frame.near) - frame.nearBits) >> frame.depthShift;
 }
 
 // Both sides of the plan must be in 1..maxPictureSide.

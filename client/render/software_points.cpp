@@ -1,13 +1,12 @@
 #include "client/render/software_points.hpp"
 
+#include "client/render/software_coverage.hpp"
 #include "client/render/software_transform.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
-
-#define STIPPLE_INLINE inline __attribute__((always_inline))
 
 namespace stipple {
 namespace {
@@ -33,41 +32,11 @@ void placeSingle(const Block& block, std::size_t count, std::uint64_t index, std
         offer<Shared>(cells[block.pixel[i]], (std::uint64_t{block.step[i]} << indexBits) | (index + i));
 }
 
-// Where a point of half size `half` at `at` (both 1/256 pixel; `half` even, `at` odd) begins and ends along
-// an axis: first and last pixel whose centre it covers. Nothing here is ever a tie.
-STIPPLE_INLINE int firstCovered(int at, int half) {
-    return (at - half - 128 + 255) >> 8;
-}
-STIPPLE_INLINE int lastCovered(int at, int half) {
-    return (at + half - 128) >> 8;
-}
-
-// Half the chord of a circle at `away` from its middle, rounded down: exact in double below 2^53.
-STIPPLE_INLINE int halfChord(int half, int away) {
-    return static_cast<int>(std::sqrt(static_cast<double>(half * half - away * away)));
-}
-
-// A square or circle of any size, clipped to the picture.
+// A square or circle of any size.
 template <bool Shared>
 void placeSprite(const RasterFrame& frame, int x, int y, int half, std::uint64_t candidate,
                  std::uint64_t* cells) {
-    int firstRow = std::max(firstCovered(y, half), 0);
-    int lastRow = std::min(lastCovered(y, half), frame.height - 1);
-    for (int row = firstRow; row <= lastRow; ++row) {
-        int away = std::abs(row * 256 + 128 - y);
-        int reach = frame.circle ? halfChord(half, away) : half;
-        int first = firstCovered(x, reach), last = lastCovered(x, reach);
-        if (away < 128) { // the pixel that holds the point
-            first = std::min(first, x >> 8);
-            last = std::max(last, x >> 8);
-        }
-        first = std::max(first, 0);
-        last = std::min(last, frame.width - 1);
-        std::uint64_t* line =
-            cells + static_cast<std::size_t>(frame.height - 1 - row) * static_cast<std::size_t>(frame.width);
-        for (int column = first; column <= last; ++column)
-            offer<Shared>(line[column], candidate);
-    }
+    visitCovered(frame, x, y, half, [&](std::size_t cell, int) { offer<Shared>(cells[cell], candidate); });
 }
 
 // Points of exactly N pixels, N small: they cover N × N pixels, or those of them inside the circle. Without
@@ -148,14 +117,9 @@ template <bool Shared>
 void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells) {
     Block block;
     const Sizing sizing = sizingOf(frame);
-    Transform transformBlock = transformFor(frame, *run.raster, sizing);
     for (std::uint32_t done = 0; done < run.count; done += blockPoints) {
-        std::size_t first = run.first + done;
         std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
-        Words words = wordsFrom(*run.node, first);
-        if (sizing == Sizing::adaptive)
-            fillFineness(run.octree, run.place, *run.node, words, count, block);
-        transformBlock(frame, *run.raster, words, count, block);
+        fillBlock(frame, run, done, count, sizing, block);
         std::uint64_t index = run.index + done;
         if (sizing == Sizing::single)
             placeSingle<Shared>(block, count, index, cells);
@@ -167,6 +131,14 @@ void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* c
 }
 
 } // namespace
+
+void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, std::size_t count,
+               Sizing sizing, Block& block) {
+    Words words = wordsFrom(*run.node, run.first + done);
+    if (sizing == Sizing::adaptive)
+        fillFineness(run.octree, run.place, *run.node, words, count, block);
+    transformFor(frame, *run.raster, sizing)(frame, *run.raster, words, count, block);
+}
 
 void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells, bool shared) {
     if (shared)

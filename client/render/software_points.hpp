@@ -7,6 +7,7 @@
 #pragma once
 
 #include "client/render/raster_setup.hpp"
+#include "client/render/software_transform.hpp"
 
 #include <cstdint>
 
@@ -28,6 +29,10 @@ struct PointRun {
         nullptr; // drawn_octree.hpp, and the node's place in it: adaptive sizes only
     std::uint32_t place = 0;
 };
+
+// Where points `done` to `done` + `count` of a run lie; count <= blockPoints.
+void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, std::size_t count,
+               Sizing sizing, Block& block);
 
 // Draws a run into `cells`: width × height, rows from top to bottom, and one more that must be 0 (points
 // outside the picture go there and never win). With `shared`, other threads may be drawing too.

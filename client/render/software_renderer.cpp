@@ -4,15 +4,19 @@
 #include "client/render/raster_setup.hpp"
 #include "client/render/software_points.hpp"
 #include "client/render/software_shading.hpp"
+#include "client/render/software_splats.hpp"
 #include "client/render/worker_pool.hpp"
 
 #include <algorithm>
+#include <atomic>
 
 namespace stipple {
 namespace {
 
 constexpr std::uint32_t runPoints = 16384; // a run is one piece of work: about 100 µs
 constexpr int rowsPerPiece = 16;
+// Each needs 32 bytes a pixel.
+constexpr int maxBlendingThreads = 8;
 
 class CellRenderer final : public SoftwareRenderer {
   public:
@@ -25,8 +29,10 @@ class CellRenderer final : public SoftwareRenderer {
         EdlSetup edl = edlSetup(plan.style.edl);
         placeNodes(plan);
         drawPoints(frame);
+        if (frame.splats)
+            blend(plan, frame);
         colour(plan, frame, edl);
-        plan.counters.passesRun += 2;
+        plan.counters.passesRun += frame.splats ? 3 : 2;
         if (edl.enabled)
             byRows([&](int y) { shadeRow(edl, distances_, y, image_); });
         ++(edl.enabled ? plan.counters.passesRun : plan.counters.passesSkipped);
@@ -66,6 +72,8 @@ class CellRenderer final : public SoftwareRenderer {
     }
 
     void placeNodes(const FramePlan& plan) {
+        if (!frame_.splats)
+            sums_.clear();
         octree_ = frame_.adaptive ? drawnOctree(plan) : DrawnOctree();
         nodes_.clear();
         std::uint64_t index = 0;
@@ -83,19 +91,42 @@ class CellRenderer final : public SoftwareRenderer {
                         width, emptyCell);
         });
         runs_.clear();
+        runNodes_.clear();
         for (const PlacedNode& placed : nodes_)
-            for (std::uint32_t first = 0; first < placed.draw->pointCount; first += runPoints)
+            for (std::uint32_t first = 0; first < placed.draw->pointCount; first += runPoints) {
+                runNodes_.push_back(&placed);
                 runs_.push_back({placed.draw->node.get(), &placed.raster, first,
                                  std::min(runPoints, placed.draw->pointCount - first),
                                  placed.firstIndex + first, octree_.words.data(), placed.octreePlace});
+            }
         bool shared = workers_.threads() > 1;
         workers_.run(runs_.size(), [&](std::size_t i) { drawRun(frame, runs_[i], cells_.data(), shared); });
+    }
+
+    // Each thread adds to sums of its own.
+    void blend(const FramePlan& plan, const RasterFrame& frame) {
+        std::size_t pixels = image_.rgba.size() / 4;
+        sums_.resize(static_cast<std::size_t>(std::min(workers_.threads(), maxBlendingThreads)));
+        std::atomic<std::size_t> next{0};
+        const GradientTable& gradient = gradientTable(plan.style.gradient);
+        workers_.run(sums_.size(), [&](std::size_t thread) {
+            std::vector<PixelSums>& sums = sums_[thread];
+            sums.assign(pixels, {});
+            for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < runs_.size();)
+                blendRun(frame, *runNodes_[i], gradient, runs_[i], cells_.data(), sums.data());
+        });
     }
 
     void colour(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl) {
         if (edl.enabled)
             distances_.resize(frame.width, frame.height, edl);
+        std::vector<const PixelSums*> sums;
+        for (const std::vector<PixelSums>& part : sums_)
+            sums.push_back(part.data());
         byRows([&](int y) {
+            if (frame.splats)
+                return blendedRow(plan, frame, sums, cells_.data(), y, image_,
+                                  edl.enabled ? &distances_ : nullptr);
             colourRow(plan, frame, nodes_, cells_.data(), y, image_, edl.enabled ? &distances_ : nullptr);
         });
     }
@@ -107,6 +138,8 @@ class CellRenderer final : public SoftwareRenderer {
     DrawnOctree octree_; // adaptive sizes
     std::vector<PlacedNode> nodes_;
     std::vector<PointRun> runs_;
+    std::vector<const PlacedNode*> runNodes_;  // parallel to runs_
+    std::vector<std::vector<PixelSums>> sums_; // per thread: splats
     InverseDistances distances_;
 };
 

@@ -27,6 +27,8 @@ std::uint32_t gradientAt(const GradientTable& table, const RasterNode& raster, f
     return table[static_cast<std::size_t>(entry)];
 }
 
+} // namespace
+
 std::uint32_t colourOf(const GradientTable& table, const PlacedNode& placed, std::size_t point) {
     const ResidentNode& node = *placed.draw->node;
     switch (placed.raster.source) {
@@ -41,6 +43,8 @@ std::uint32_t colourOf(const GradientTable& table, const PlacedNode& placed, std
     }
     return plainColourWord;
 }
+
+namespace {
 
 // Base-2 logarithm of a normal number >= 1, to 2e-7: x = 2^e × m with m in [√½, √2), and
 // ln m = 2 atanh(t), t = (m - 1) / (m + 1), |t| < 0.172; the first term left out is t^9 / 9.

@@ -163,6 +163,8 @@ std::string Viewer::errorsJson() const {
         list.push_back(error.sentence());
     if (drawError_)
         list.push_back(drawError_->sentence());
+    if (renderer_ && !renderer_->limitation().empty())
+        list.push_back(std::string(renderer_->limitation()));
     return jsonText(list);
 }
 

@@ -73,7 +73,9 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
     }
     reference::Canvas canvas(view.width, view.height, samples);
     canvas.draw(marks, style.shape);
-    canvas.doubt(marks, style.shape, slack);
+    if (style.splats.enabled)
+        canvas.blend(marks, style);
+    canvas.doubt(marks, style, slack);
     return {canvas.finish(style), canvas.doubtful(style)};
 }
 

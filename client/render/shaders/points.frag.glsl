@@ -1,21 +1,50 @@
 // Colours the pixels of a point; round points drop those whose centre lies outside the circle, except the
 // pixel that holds the point (client/render/raster_setup.hpp, "Coverage").
+// BLEND: adds the point's weighted colour where it lies within its blend depth of the nearest ("Splats").
 precision highp float;
 precision highp int;
+precision highp sampler2D;
 
 flat in vec4 vColour;
-#ifdef CIRCLE
+#ifdef CENTRED
 flat in ivec3 vDisc;
+#endif
+#ifdef BLEND
+flat in uint vBlended;
+uniform sampler2D uNearest; // depth of the nearest points
+uniform int uHardness;
 #endif
 
 layout(location = 0) out vec4 outColour;
 
+#ifdef BLEND
+// In 2^-16.
+float weightAt(int away) {
+    float base = max(1.0 - float(away) / float(vDisc.z), 0.0);
+    float weight = base;
+    for (int i = 1; i < uHardness; ++i)
+        weight *= base;
+    return (floor(weight * 65535.0) + 1.0) * (1.0 / 65536.0);
+}
+#endif
+
 void main() {
+#ifdef CENTRED
+    ivec2 apart = abs(ivec2(gl_FragCoord.xy * 256.0) - vDisc.xy);
+    int away = apart.x * apart.x + apart.y * apart.y;
 #ifdef CIRCLE
-    ivec2 away = abs(ivec2(gl_FragCoord.xy * 256.0) - vDisc.xy);
-    bool holdsPoint = max(away.x, away.y) < 128;
-    if (!holdsPoint && away.x * away.x + away.y * away.y > vDisc.z)
+    bool holdsPoint = max(apart.x, apart.y) < 128;
+    if (!holdsPoint && away > vDisc.z)
         discard;
 #endif
+#endif
+#ifdef BLEND
+    uint nearest = uint(texelFetch(uNearest, ivec2(gl_FragCoord.xy), 0).r * 16777216.0);
+    if (vBlended > nearest)
+        discard;
+    float weight = weightAt(away);
+    outColour = vec4(vColour.rgb * weight, weight);
+#else
     outColour = vec4(vColour.rgb, 1.0);
+#endif
 }

@@ -1,7 +1,7 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
-// Defined before this text: LOW_WORDS where the node has a third position word; CIRCLE for round points; ADAPTIVE
-// (with the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there.
+// Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE (with
+// the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -30,11 +30,6 @@ uniform int uColourSource; // ColourSource
 uniform vec2 uRamp;        // scale, offset
 uniform vec2 uRank;        // raster_setup.hpp, "Detail": base, step
 
-uniform vec2 uCentre; // half the picture, pixels
-uniform vec2 uNearFar;
-uniform uint uNearBits;
-uniform int uDepthShift;
-uniform bool uPerspective;
 uniform bool uSizeByDistance;
 uniform float uSize64;
 uniform float uWorldSize64;
@@ -47,11 +42,6 @@ uniform bool uSizeByDensity;
 uniform sampler2D uGradient;
 #ifdef ADAPTIVE
 uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
-#endif
-
-flat out vec4 vColour;
-#ifdef CIRCLE
-flat out ivec3 vDisc; // centre in 1/256 pixel, squared radius in (1/256 pixel)²
 #endif
 
 #ifdef CAPTURE_LEVELS
@@ -91,11 +81,6 @@ vec4 colourOf(vec3 r) {
     return aColour;
 }
 
-// What is outside the clip volume is not drawn: beyond the far plane.
-void discardPoint() {
-    gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
-}
-
 void main() {
     uvec3 p = uvec3(aPosition.x & 0x1FFFFFu, (aPosition.x >> 21) | ((aPosition.y << 10) & 0x1FF800u),
                     aPosition.y >> 11);
@@ -109,10 +94,6 @@ void main() {
 
     float d = along(uRowD, r);
     vColour = colourOf(r);
-#ifdef CIRCLE
-    vDisc = ivec3(0);
-#endif
-    gl_PointSize = 1.0;
 #ifdef ADAPTIVE
     int levels = levelsBelow(p);
 #ifdef CAPTURE_LEVELS
@@ -140,7 +121,7 @@ void main() {
     }
     window = window + uCentre;
     window = clamp(window, vec2(-32768.0), vec2(32768.0));
-    vec2 cell = uDeep ? vec2(deepCell(steps, window)) : floor(window * 128.0);
+    ivec2 cell = uDeep ? deepCell(steps, window) : ivec2(floor(window * 128.0));
 
     float size64 = uSize64;
 #ifdef ADAPTIVE
@@ -154,14 +135,5 @@ void main() {
 #endif
     if (uContinuous)
         size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);
-    size64 = floor(size64);
-    gl_PointSize = size64 * (1.0 / 64.0);
-#ifdef CIRCLE
-    int radius = 2 * int(size64);
-    vDisc = ivec3(2 * ivec2(cell) + 1, radius * radius);
-#endif
-    // Middle of the cell in normalised device coordinates, w = 1: nothing is divided after this.
-    vec2 snapped = (cell + 0.5) * (1.0 / 128.0);
-    uint q = (floatBitsToUint(d) - uNearBits) >> uDepthShift;
-    gl_Position = vec4((snapped - uCentre) / uCentre, float(q) * (1.0 / 8388608.0) - 1.0, 1.0);
+    placePoint(cell, floor(size64), (floatBitsToUint(d) - uNearBits) >> uDepthShift);
 }

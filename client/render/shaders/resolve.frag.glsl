@@ -4,7 +4,8 @@ precision highp float;
 precision highp int;
 precision highp sampler2D;
 
-uniform sampler2D uColour;
+uniform sampler2D uColour; // SPLATS: sums of weighted colours and, in alpha, of weights
+uniform vec3 uBackground;
 uniform sampler2D uDepth;
 uniform uint uNearBits;
 uniform int uDepthShift;
@@ -39,7 +40,12 @@ float shadeOf(ivec2 at) {
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
+#ifdef SPLATS
+    vec4 sums = texelFetch(uColour, at, 0);
+    vec3 colour = sums.a > 0.0 ? sums.rgb / sums.a : uBackground;
+#else
     vec3 colour = texelFetch(uColour, at, 0).rgb;
+#endif
     float shade = uNeighbours > 0 ? shadeOf(at) : 1.0;
     outColour = vec4(colour * shade, 1.0);
 }

@@ -125,6 +125,20 @@ export class LookPanel extends ModelElement {
                 ],
                 (shape) => this.model.changeStyle({ shape }),
             )}
+            <label class="row">
+                <span>Blend</span>
+                <span>
+                    <input
+                        type="checkbox"
+                        aria-label="High-quality splats"
+                        .checked=${style.splats.enabled}
+                        @change=${(event: Event) =>
+                            this.model.changeStyle({
+                                splats: { ...style.splats, enabled: (event.target as HTMLInputElement).checked },
+                            })}
+                    />
+                </span>
+            </label>
         </fieldset>`;
     }
 

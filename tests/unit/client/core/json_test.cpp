@@ -34,6 +34,7 @@ TEST_CASE("a style survives the way to JSON and back") {
     style.gradient = GradientName::terrain;
     style.elevationRange = {-3, 7.5};
     style.sizeMode = PointSizeMode::world;
+    style.splats = {true, 7, 0.25};
     style.sizeWorld = 0.25;
     style.shape = PointShape::square;
     style.edl = {false, 4, 2.5, 1.25};

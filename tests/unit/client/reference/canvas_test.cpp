@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -52,6 +53,29 @@ std::vector<Mark> randomMarks(int count) {
 }
 
 } // namespace
+
+TEST_CASE("splats show the weighted mean of what lies within the blend depth, in any order") {
+    Style style = plain();
+    style.splats = {true, 2, 0.01};
+    Mark front = mark(8.5, 8.5, 4, 10, 0, {200, 0, 0}), beside = mark(9.5, 8.5, 4, 10.09, 1, {0, 100, 0});
+    Mark behind = mark(8.5, 8.5, 4, 10.4, 2, {0, 0, 255});
+    for (Mark* m : {&front, &beside, &behind})
+        m->unitsPerPixel = 0.1; // radius 0.2 and 0.01 of the distance: blended down to 10.3 or so
+    std::vector<Mark> marks{front, beside, behind};
+    for (int turn = 0; turn < 2; ++turn) {
+        Canvas canvas(16, 16);
+        canvas.draw(marks, style.shape);
+        canvas.blend(marks, style);
+        DepthImage picture = canvas.finish(style);
+        const std::uint8_t* pixel = picture.image.rgba.data() + 4 * (8 * 16 + 8);
+        double w0 = 1, w1 = std::pow(1 - 0.25, 2);
+        CHECK(pixel[0] == std::lround(200 * w0 / (w0 + w1)));
+        CHECK(pixel[1] == std::lround(100 * w1 / (w0 + w1)));
+        CHECK(pixel[2] == 0);
+        CHECK(picture.distances[8 * 16 + 8] == 10);
+        std::reverse(marks.begin(), marks.end());
+    }
+}
 
 TEST_CASE("a mark covers the pixels whose centres lie inside it, and the one that holds it") {
     auto draw = [](double x, double y, double diameter, PointShape shape) {
@@ -151,7 +175,9 @@ TEST_CASE("doubt falls on pixels whose mark is about to change, and on no others
     const std::vector<Mark> marks{mark(4, 4, 3.01, 10, 1), mark(12, 4, 3.5, 10, 2),
                                   mark(12, 4, 3.5, 10.00001, 3), mark(20, 4, 3.5, 10, 4)};
     canvas.draw(marks, PointShape::square);
-    canvas.doubt(marks, PointShape::square, {});
+    Style square;
+    square.shape = PointShape::square;
+    canvas.doubt(marks, square, {});
     Style style = plain();
     std::vector<bool> doubtful = canvas.doubtful(style);
     auto at = [&](std::size_t x, std::size_t y) { return bool(doubtful[y * 24 + x]); };

@@ -107,15 +107,17 @@ TEST_CASE("the spacing where a point lies is that of the finest of all nodes tha
 TEST_CASE("threads, and how many pictures are drawn at a time, change nothing") {
     std::vector<Job> jobs{job(), job(NamedView::top, ColourMode::elevation),
                           job(NamedView::front, ColourMode::rgb, 2),
-                          job(NamedView::iso, ColourMode::intensity)};
+                          job(NamedView::iso, ColourMode::intensity), job()};
+    jobs[4].style.splats.enabled = true;
     std::vector<DepthImage> pictures = draw(jobs, {1, 1ull << 30, {}});
-    REQUIRE(pictures.size() == 4);
+    REQUIRE(pictures.size() == 5);
     CHECK_FALSE(same(pictures[0], pictures[3]));
+    CHECK_FALSE(same(pictures[0], pictures[4]));
     for (const reference::Options& options :
          {reference::Options{3, 1ull << 30, {}}, {2, 1, {}}, {2, 600000, {}}}) {
         std::vector<DepthImage> again = draw(jobs, options);
-        REQUIRE(again.size() == 4);
-        for (std::size_t i = 0; i < 4; ++i)
+        REQUIRE(again.size() == 5);
+        for (std::size_t i = 0; i < 5; ++i)
             CHECK(same(again[i], pictures[i]));
     }
 }
