@@ -136,7 +136,8 @@ void Canvas::doubtBlend(const Mark& mark, std::size_t sample, double depth, doub
         apart = std::max(apart, std::abs(double{mark.colour[c]} - sums_[sample][c] / sums_[sample][3]));
     constexpr double weightStep = 1.0 / 65536; // renderers round weights to it
     swings_[sample] += (change / 2 + weightStep) * apart / sums_[sample][3];
-    if (swings_[sample] > slack.levels)
+    bool dominates = change > sums_[sample][3] / 2; // the mean does not follow in proportion
+    if (swings_[sample] > slack.levels || dominates)
         doubtful_[sample] = true;
 }
 
