@@ -12,7 +12,7 @@ namespace stipple {
 
 namespace {
 
-using Form = PlyProperty::Form;
+using Form = WrittenPlyProperty::Form;
 
 constexpr double exactInDouble = 0x1p53;
 
@@ -104,7 +104,7 @@ class LayoutMaker {
         auto isTaken = [&](const std::string& wanted) {
             return wanted == "x" || wanted == "y" || wanted == "z" ||
                    std::any_of(layout_.properties.begin(), layout_.properties.end(),
-                               [&](const PlyProperty& p) { return p.name == wanted; });
+                               [&](const WrittenPlyProperty& p) { return p.name == wanted; });
         };
         std::string unique = name;
         for (int i = 2; isTaken(unique); ++i)
@@ -129,7 +129,7 @@ class LayoutMaker {
 
 // `convert` turns a stored value into what the record holds.
 template <class T, class Convert>
-void convertAll(const PlyProperty& property, const Attribute& attribute, const Bytes& column,
+void convertAll(const WrittenPlyProperty& property, const Attribute& attribute, const Bytes& column,
                 std::uint8_t* to, std::size_t stride, std::size_t count, Convert convert) {
     const std::uint8_t* from = column.data() + static_cast<std::size_t>(property.component) * sizeof(T);
     std::size_t step = attribute.size();
@@ -138,8 +138,8 @@ void convertAll(const PlyProperty& property, const Attribute& attribute, const B
 }
 
 template <class T>
-void putAs(const PlyProperty& property, const Attribute& attribute, const Bytes& column, std::uint8_t* to,
-           std::size_t stride, std::size_t count) {
+void putAs(const WrittenPlyProperty& property, const Attribute& attribute, const Bytes& column,
+           std::uint8_t* to, std::size_t stride, std::size_t count) {
     auto all = [&](auto convert) { convertAll<T>(property, attribute, column, to, stride, count, convert); };
     switch (property.form) {
     case Form::stored:
@@ -169,7 +169,7 @@ PlyLayout plyLayout(const SinkInput& input) {
     return LayoutMaker(input).make();
 }
 
-Status putProperty(const PlyProperty& property, const Attribute& attribute, const Bytes& column,
+Status putProperty(const WrittenPlyProperty& property, const Attribute& attribute, const Bytes& column,
                    std::uint8_t* to, std::size_t stride, std::size_t count) {
     if (property.form == Form::lowByte) {
         unsigned all = 0;

@@ -8,7 +8,7 @@
 
 namespace stipple {
 
-struct PlyProperty {
+struct WrittenPlyProperty {
     enum class Form : std::uint8_t {
         stored,   // as it is
         lowByte,  // the lower byte of a u16 that is below 256
@@ -26,16 +26,16 @@ struct PlyProperty {
 };
 
 struct PlyLayout {
-    std::vector<PlyProperty> properties; // those after x, y and z
-    std::vector<std::string> comments;   // what the names do not say
-    std::size_t bytesPerPoint = 0;       // x, y and z included
+    std::vector<WrittenPlyProperty> properties; // those after x, y and z
+    std::vector<std::string> comments;          // what the names do not say
+    std::size_t bytesPerPoint = 0;              // x, y and z included
 };
 
 PlyLayout plyLayout(const SinkInput& input);
 
 // Values of `count` points from `column` into records `stride` bytes apart. outOfRange where a lowByte is
 // no byte.
-Status putProperty(const PlyProperty& property, const Attribute& attribute, const Bytes& column,
+Status putProperty(const WrittenPlyProperty& property, const Attribute& attribute, const Bytes& column,
                    std::uint8_t* to, std::size_t stride, std::size_t count);
 
 } // namespace stipple

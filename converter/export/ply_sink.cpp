@@ -39,7 +39,7 @@ class PlySink final : public PointSink {
             storeLe(points.bytes.data() + i * stride, std::array{world.x, world.y, world.z});
         }
         std::size_t at = 3 * sizeof(double);
-        for (const PlyProperty& property : layout_.properties) {
+        for (const WrittenPlyProperty& property : layout_.properties) {
             STIPPLE_CHECK(putProperty(property, input_.attribute(property.column),
                                       batch.columns[property.column], points.bytes.data() + at, stride,
                                       batch.size()));
@@ -77,7 +77,7 @@ class PlySink final : public PointSink {
             text += "comment " + comment + "\n";
         text += "comment" + std::string(digits - number.size(), ' ') + "\n";
         text += "element vertex " + number + "\nproperty double x\nproperty double y\nproperty double z\n";
-        for (const PlyProperty& property : layout_.properties)
+        for (const WrittenPlyProperty& property : layout_.properties)
             text += cat("property ", property.type, " ", property.name, "\n");
         return text + "end_header\n";
     }
