@@ -12,4 +12,5 @@ case "${1:-}" in
   *) echo "scripts/test_sanitized.sh: $1 is no option (--server or --threads)" >&2; exit 2 ;;
 esac
 configure_and_build "$preset" "sanitize_$label"
+export TSAN_OPTIONS="suppressions=$PWD/tests/support/thread_sanitizer.supp${TSAN_OPTIONS:+:$TSAN_OPTIONS}"
 ctest --test-dir "build/$preset" -L "$label" --output-on-failure --no-tests=error

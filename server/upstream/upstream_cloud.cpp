@@ -32,6 +32,10 @@ Result<std::shared_ptr<UpstreamCloud>> UpstreamCloud::open(std::shared_ptr<Upstr
 
 bool UpstreamCloud::mustBePrepared() const {
     std::lock_guard lock(mutex_);
+    return mustLookLocked();
+}
+
+bool UpstreamCloud::mustLookLocked() const {
     if (!lookedAt_)
         return true;
     auto age = Clock::now() - *lookedAt_;
@@ -40,14 +44,32 @@ bool UpstreamCloud::mustBePrepared() const {
     return version_->upstream->isGone() || age >= upstream_->options.freshFor;
 }
 
-void UpstreamCloud::prepare(const std::atomic<bool>& stop) {
+// True: the caller looks, and gives its turn back. False: there is nothing to do any more. (No timed_mutex:
+// the thread sanitizer of GCC 12 does not know how glibc waits for one.)
+bool UpstreamCloud::takeTurn(const std::atomic<bool>& stop) {
     constexpr std::chrono::milliseconds untilLookingAtStop{20};
-    std::unique_lock looking(looking_, std::defer_lock);
-    while (!looking.try_lock_for(untilLookingAtStop))
-        if (stop)
-            return;
-    if (!mustBePrepared())
+    std::unique_lock lock(mutex_);
+    while (isLooking_ && !stop)
+        lookOver_.wait_for(lock, untilLookingAtStop);
+    if (isLooking_ || !mustLookLocked())
+        return false;
+    isLooking_ = true;
+    return true;
+}
+
+void UpstreamCloud::giveTurn() {
+    std::lock_guard lock(mutex_);
+    isLooking_ = false;
+    lookOver_.notify_all();
+}
+
+void UpstreamCloud::prepare(const std::atomic<bool>& stop) {
+    if (!takeTurn(stop))
         return;
+    struct Turn { // also by an exception
+        UpstreamCloud& cloud;
+        ~Turn() { cloud.giveTurn(); }
+    } turn{*this};
     auto found = look(stop);
     if (!found && found.error().code == ErrorCode::cancelled)
         return; // whoever is next looks

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -33,11 +34,15 @@ class UpstreamCloud {
     UpstreamCloud(std::shared_ptr<Upstream> upstream, std::string url)
         : upstream_(std::move(upstream)), url_(std::move(url)) {}
     Result<std::shared_ptr<const CloudVersion>> look(const std::atomic<bool>& stop) const;
+    bool takeTurn(const std::atomic<bool>& stop);
+    void giveTurn();
+    bool mustLookLocked() const;
 
     const std::shared_ptr<Upstream> upstream_;
     const std::string url_;
-    std::timed_mutex looking_;
     mutable std::mutex mutex_; // of what follows
+    std::condition_variable lookOver_;
+    bool isLooking_ = false; // somebody is
     std::shared_ptr<const CloudVersion> version_;
     std::optional<Error> failure_; // of the last look
     std::optional<Clock::time_point> lookedAt_;
