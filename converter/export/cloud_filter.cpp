@@ -274,8 +274,7 @@ bool CloudFilter::wantsBelow(const NodeEntry& entry) const {
 }
 
 void CloudFilter::keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry& entry,
-                               std::span<const Vec3i> positions) const {
-    const Overlaps overlaps = overlapsOf(entry);
+                               const Overlaps& overlaps, std::span<const Vec3i> positions) const {
     auto keep = [&](Overlap overlap, auto holds) {
         if (overlap != Overlap::whole)
             std::erase_if(rows, [&](std::uint32_t row) { return !holds(positions[row]); });
@@ -296,41 +295,55 @@ void CloudFilter::keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry
     });
 }
 
-std::vector<std::uint32_t> CloudFilter::select(const NodeEntry& entry, std::span<const Vec3i> positions,
-                                               std::span<const Bytes* const> tested, Dropped& dropped) const {
-    std::vector<std::uint32_t> rows;
-    if (thins(entry)) {
-        rows = thinned(positions, metadata_->rootCube.nodeMin(entry.key), metric_, filter_.spacing);
-    } else {
-        rows.resize(positions.size());
-        std::iota(rows.begin(), rows.end(), 0u);
+Result<std::vector<std::uint32_t>> CloudFilter::select(const NodeEntry& entry,
+                                                       std::span<const Vec3i> positions,
+                                                       std::span<const Bytes* const> tested, Dropped& dropped,
+                                                       const WorkGate* gate) const {
+    std::vector<std::uint32_t> distant, wanted;
+    const bool isThinned = thins(entry);
+    if (isThinned) {
+        STIPPLE_TRY(
+            kept, thinned(positions, metadata_->rootCube.nodeMin(entry.key), metric_, filter_.spacing, gate));
+        distant = std::move(kept);
+        dropped.bySpacing += positions.size() - distant.size();
     }
-    dropped.bySpacing += positions.size() - rows.size();
+    const Overlaps overlaps = overlapsOf(entry);
+    const std::size_t count = isThinned ? distant.size() : positions.size();
+    STIPPLE_CHECK(inPieces(gate, count, [&](std::size_t first, std::size_t end) {
+        std::vector<std::uint32_t> rows(end - first);
+        if (isThinned)
+            std::copy_n(distant.begin() + static_cast<std::ptrdiff_t>(first), rows.size(), rows.begin());
+        else
+            std::iota(rows.begin(), rows.end(), static_cast<std::uint32_t>(first));
+        keepInRegion(rows, entry, overlaps, positions);
+        dropped.byRegion += end - first - rows.size();
 
-    std::size_t before = rows.size();
-    keepInRegion(rows, entry, positions);
-    dropped.byRegion += before - rows.size();
-
-    before = rows.size();
-    for (std::size_t i = 0; i < conditionAttributes_.size(); ++i) {
-        auto a = static_cast<std::size_t>(conditionAttributes_[i]);
-        keepInRanges(rows, metadata_->schema.attributes[a].type, *tested[i], filter_.conditions[i].ranges);
-    }
-    dropped.byAttribute += before - rows.size();
-    return rows;
+        std::size_t before = rows.size();
+        for (std::size_t i = 0; i < conditionAttributes_.size(); ++i) {
+            auto a = static_cast<std::size_t>(conditionAttributes_[i]);
+            keepInRanges(rows, metadata_->schema.attributes[a].type, *tested[i],
+                         filter_.conditions[i].ranges);
+        }
+        dropped.byAttribute += before - rows.size();
+        wanted.insert(wanted.end(), rows.begin(), rows.end());
+    }));
+    return wanted;
 }
 
-std::array<Bytes, 2> CloudFilter::placesAlong(const NodeEntry& entry,
-                                              std::span<const Vec3i> positions) const {
+Result<std::array<Bytes, 2>> CloudFilter::placesAlong(const NodeEntry& entry,
+                                                      std::span<const Vec3i> positions,
+                                                      const WorkGate* gate) const {
     std::array<Bytes, 2> columns{Bytes(8 * positions.size()), Bytes(8 * positions.size())};
     std::vector<std::uint32_t> parts = filter_.corridor->partsNear(worldBoxOf(cubeOf(entry.key)));
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        constexpr double none = std::numeric_limits<double>::quiet_NaN();
-        Vec3d at = metadata_->grid.toWorld(positions[i]);
-        auto place = filter_.corridor->placeOf({at.x, at.y}, parts).value_or(Corridor::Place{none, none});
-        storeLe(columns[0].data() + 8 * i, place.station);
-        storeLe(columns[1].data() + 8 * i, place.offset);
-    }
+    STIPPLE_CHECK(inPieces(gate, positions.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            constexpr double none = std::numeric_limits<double>::quiet_NaN();
+            Vec3d at = metadata_->grid.toWorld(positions[i]);
+            auto place = filter_.corridor->placeOf({at.x, at.y}, parts).value_or(Corridor::Place{none, none});
+            storeLe(columns[0].data() + 8 * i, place.station);
+            storeLe(columns[1].data() + 8 * i, place.offset);
+        }
+    }));
     return columns;
 }
 

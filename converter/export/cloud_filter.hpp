@@ -10,6 +10,7 @@
 
 #include "converter/export/point_filter.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_entry.hpp"
 #include "shared/points/point_batch.hpp"
@@ -49,13 +50,17 @@ class CloudFilter {
     struct Dropped {
         std::uint64_t bySpacing = 0, byRegion = 0, byAttribute = 0;
     };
-    // The rows of the points wanted, ascending. tested[i] is the column of testedAttributes()[i].
-    std::vector<std::uint32_t> select(const NodeEntry& entry, std::span<const Vec3i> positions,
-                                      std::span<const Bytes* const> tested, Dropped& dropped) const;
+    // The rows of the points wanted, ascending. tested[i] is the column of testedAttributes()[i]. `cancelled`
+    // once the gate is closed.
+    Result<std::vector<std::uint32_t>> select(const NodeEntry& entry, std::span<const Vec3i> positions,
+                                              std::span<const Bytes* const> tested, Dropped& dropped,
+                                              const WorkGate* gate = nullptr) const;
 
     // Where points of a node lie along the corridor of the filter: doubles, little-endian, a column of
-    // stations and one of offsets. NaN for points that are not in it. There must be a corridor.
-    std::array<Bytes, 2> placesAlong(const NodeEntry& entry, std::span<const Vec3i> positions) const;
+    // stations and one of offsets. NaN for points that are not in it. There must be a corridor. `cancelled`
+    // once the gate is closed.
+    Result<std::array<Bytes, 2>> placesAlong(const NodeEntry& entry, std::span<const Vec3i> positions,
+                                             const WorkGate* gate = nullptr) const;
     bool hasCorridor() const { return filter_.corridor != nullptr; }
 
     // Every point wanted lies in it (grid integers); empty if there can be none.
@@ -77,7 +82,7 @@ class CloudFilter {
     Overlaps overlapsOf(const NodeEntry& entry) const;
     BoxI cubeOf(const NodeKey& key) const;
     BoxD worldBoxOf(const BoxI& steps) const;
-    void keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry& entry,
+    void keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry& entry, const Overlaps& overlaps,
                       std::span<const Vec3i> positions) const;
 
     const CloudMetadata* metadata_;

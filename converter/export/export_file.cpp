@@ -37,7 +37,7 @@ class Export {
   public:
     Export(const std::string& input, const std::string& output, const ExportOptions& options,
            const ConvertProgress& progress)
-        : input_(input), output_(output), options_(options), progress_(progress) {}
+        : input_(input), output_(output), options_(options), gate_(options.stop), progress_(progress) {}
 
     Result<ExportResult> run() {
         STIPPLE_CHECK(chooseFormat());
@@ -113,7 +113,7 @@ class Export {
     WalkOptions walkOptions(const char* phase, bool whole) const {
         WalkOptions walk;
         walk.threads = threadCount(options_.threads);
-        walk.stop = options_.stop;
+        walk.gate = &gate_;
         walk.limit = options_.limit;
         // How many points a filter leaves to read is not known before.
         std::uint64_t total = whole ? result_.metadata.pointCount : 0;
@@ -164,6 +164,7 @@ class Export {
     const std::string& input_;
     const std::string& output_;
     const ExportOptions& options_;
+    const StopGate gate_;
     const ConvertProgress& progress_;
     ExportFormat format_ = ExportFormat::las;
     ExportResult result_;

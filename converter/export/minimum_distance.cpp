@@ -36,8 +36,8 @@ class Cells {
 
 } // namespace
 
-std::vector<std::uint32_t> thinned(std::span<const Vec3i> points, Vec3i corner, Vec3d scale,
-                                   double distance) {
+Result<std::vector<std::uint32_t>> thinned(std::span<const Vec3i> points, Vec3i corner, Vec3d scale,
+                                           double distance, const WorkGate* gate) {
     auto metric = [&](Vec3i p) {
         return Vec3d{static_cast<double>(p.x) * scale.x, static_cast<double>(p.y) * scale.y,
                      static_cast<double>(p.z) * scale.z};
@@ -65,13 +65,15 @@ std::vector<std::uint32_t> thinned(std::span<const Vec3i> points, Vec3i corner, 
         return true;
     };
     std::vector<std::uint32_t> kept;
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        Vec3i cell = cellOf(metric(points[i] - corner));
-        if (!isFree(points[i], cell))
-            continue;
-        cells.add(cell, i);
-        kept.push_back(i);
-    }
+    STIPPLE_CHECK(inPieces(gate, points.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            Vec3i cell = cellOf(metric(points[i] - corner));
+            if (!isFree(points[i], cell))
+                continue;
+            cells.add(cell, static_cast<std::uint32_t>(i));
+            kept.push_back(static_cast<std::uint32_t>(i));
+        }
+    }));
     return kept;
 }
 

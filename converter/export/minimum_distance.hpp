@@ -3,6 +3,8 @@
 // axis that does not count).
 #pragma once
 
+#include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/geometry/vec3.hpp"
 
 #include <cstdint>
@@ -12,7 +14,9 @@
 namespace stipple {
 
 // Indices of the points kept, ascending. `distance` > 0, in the units of `scale`. `corner`: no point has a
-// smaller coordinate; none is 2^52 steps or more away from it. Expected time and memory: linear.
-std::vector<std::uint32_t> thinned(std::span<const Vec3i> points, Vec3i corner, Vec3d scale, double distance);
+// smaller coordinate; none is 2^52 steps or more away from it. Expected time and memory: linear. `cancelled`
+// once the gate is closed.
+Result<std::vector<std::uint32_t>> thinned(std::span<const Vec3i> points, Vec3i corner, Vec3d scale,
+                                           double distance, const WorkGate* gate = nullptr);
 
 } // namespace stipple

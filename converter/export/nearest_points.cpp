@@ -100,15 +100,14 @@ struct Waiting {
 class Search {
   public:
     Search(CloudReader& reader, const std::string& name, const CloudFilter& filter, const PointRank& rank,
-           std::size_t count, const std::atomic<bool>* stop)
-        : reader_(reader), name_(name), filter_(filter), rank_(rank), count_(count), stop_(stop) {}
+           std::size_t count, const WorkGate* gate)
+        : reader_(reader), name_(name), filter_(filter), rank_(rank), count_(count), gate_(gate) {}
 
     Result<NearestPoints> run() {
         STIPPLE_CHECK(readChunk(rootChunkPlace(reader_.header())));
         enqueue(NodeKey{});
         while (!queue_.empty()) {
-            if (stop_ && *stop_)
-                return Error{ErrorCode::cancelled, "interrupted", "", ""};
+            STIPPLE_CHECK(askGate(gate_, 0));
             Waiting next = queue_.top();
             queue_.pop();
             if (best_.size() == count_ && next.best > best_.rbegin()->rank)
@@ -162,14 +161,19 @@ class Search {
         for (const Bytes& column : points.columns)
             tested.push_back(&column);
         CloudFilter::Dropped dropped;
-        std::vector<std::uint32_t> rows(points.size());
-        std::iota(rows.begin(), rows.end(), 0u);
-        if (verdict == Verdict::tested)
-            rows = filter_.select(node, points.positions, tested, dropped);
-        for (std::uint32_t row : rows)
-            consider(node, row, points.positions[row]);
+        std::vector<std::uint32_t> rows;
+        if (verdict == Verdict::tested) {
+            STIPPLE_TRY(kept, filter_.select(node, points.positions, tested, dropped, gate_));
+            rows = std::move(kept);
+        } else {
+            rows.resize(points.size());
+            std::iota(rows.begin(), rows.end(), 0u);
+        }
         counters_.pointsRanked += rows.size();
-        return {};
+        return inPieces(gate_, rows.size(), [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i)
+                consider(node, rows[i], points.positions[rows[i]]);
+        });
     }
 
     void consider(const NodeEntry& node, std::uint32_t row, Vec3i position) {
@@ -185,7 +189,7 @@ class Search {
         STIPPLE_TRY(bytes, reader_.fetchNode(node, filter_.testedAttributes()));
         ++counters_.nodesRead;
         counters_.bytesRead += bytes.bytes.size();
-        auto points = decodeNode(reader_.metadata(), bytes);
+        auto points = decodeNode(reader_.metadata(), bytes, gate_);
         if (!points)
             return points.error().at(name_);
         return points;
@@ -196,7 +200,7 @@ class Search {
     const CloudFilter& filter_;
     const PointRank& rank_;
     const std::size_t count_;
-    const std::atomic<bool>* stop_;
+    const WorkGate* gate_;
     std::unordered_map<NodeKey, NodeEntry, NodeKeyHash> known_; // met in a chunk, not looked at yet
     std::priority_queue<Waiting> queue_;
     std::set<RankedPoint> best_;
@@ -206,8 +210,8 @@ class Search {
 } // namespace
 
 Result<NearestPoints> nearestPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
-                                    const PointRank& rank, std::size_t count, const std::atomic<bool>* stop) {
-    return Search(reader, name, filter, rank, count, stop).run();
+                                    const PointRank& rank, std::size_t count, const WorkGate* gate) {
+    return Search(reader, name, filter, rank, count, gate).run();
 }
 
 } // namespace stipple

@@ -87,8 +87,8 @@ struct NearestPoints {
 
 // At most `count` (at least 1) of the points that pass the filter, which must be over the reader's metadata
 // and without a spacing. Errors: those of reading, with the node and the file's name, `name`; cancelled once
-// `stop`.
+// the gate is closed.
 Result<NearestPoints> nearestPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
-                                    const PointRank& rank, std::size_t count, const std::atomic<bool>* stop);
+                                    const PointRank& rank, std::size_t count, const WorkGate* gate);
 
 } // namespace stipple

@@ -1,5 +1,6 @@
 #include "converter/export/walk_points.hpp"
 
+#include "converter/export/encode_pieces.hpp"
 #include "converter/export/ordered_work.hpp"
 #include "shared/base/text.hpp"
 
@@ -13,37 +14,29 @@ namespace {
 
 constexpr std::size_t nodesPerThread = 4;
 constexpr std::uint64_t maxPointsWaiting = 2'000'000;
-constexpr std::size_t maxPointsEncoded = 1 << 18; // at once: text takes many times what points do
+constexpr std::size_t maxPointsEncoded = 1 << 18; // ahead of writing: text takes many times what points do
 
-template <std::size_t size>
-void gather(const Bytes& from, const std::vector<std::uint32_t>& rows, Bytes& to) {
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        std::memcpy(to.data() + i * size, from.data() + rows[i] * size, size);
-}
-
-Bytes rowsOf(const Bytes& column, const std::vector<std::uint32_t>& rows, std::size_t size) {
-    Bytes picked(rows.size() * size);
+// `to` has room for them.
+void gather(const Bytes& from, std::span<const std::uint32_t> rows, std::size_t size, std::uint8_t* to) {
+    auto gatherAs = [&](auto width) {
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            std::memcpy(to + i * width, from.data() + rows[i] * width, width);
+    };
     switch (size) { // a constant width lets the compiler turn the copy into one move
     case 1:
-        gather<1>(column, rows, picked);
-        break;
+        return gatherAs(std::integral_constant<std::size_t, 1>{});
     case 2:
-        gather<2>(column, rows, picked);
-        break;
+        return gatherAs(std::integral_constant<std::size_t, 2>{});
     case 4:
-        gather<4>(column, rows, picked);
-        break;
+        return gatherAs(std::integral_constant<std::size_t, 4>{});
     case 8:
-        gather<8>(column, rows, picked);
-        break;
+        return gatherAs(std::integral_constant<std::size_t, 8>{});
     default:
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            std::memcpy(picked.data() + i * size, column.data() + rows[i] * size, size);
+        return gatherAs(size);
     }
-    return picked;
 }
 
-// A node's points, chosen; encoded unless there are too many for one piece.
+// A node's points, chosen; encoded unless there are too many.
 struct Chosen {
     int level = 0;
     std::uint64_t nodePoints = 0;
@@ -51,7 +44,7 @@ struct Chosen {
     CloudFilter::Dropped dropped;
     std::uint64_t taken = 0;
     PointBatch batch;
-    std::optional<EncodedPoints> encoded;
+    std::vector<EncodedPoints> encoded; // in order
 };
 
 class Walk {
@@ -79,8 +72,7 @@ class Walk {
         STIPPLE_CHECK(checkDerived());
         auto visited = reader_.visitWanted(
             [&](const NodeEntry& entry) -> Result<bool> {
-                if (options_.stop && *options_.stop)
-                    return Error{ErrorCode::cancelled, "interrupted", "", ""};
+                STIPPLE_CHECK(askGate(options_.gate, 0));
                 STIPPLE_CHECK(visit(entry));
                 return filter_.wantsBelow(entry);
             },
@@ -177,7 +169,7 @@ class Walk {
 
     // On any thread.
     Result<Chosen> choose(const NodeBytes& node, bool tested, bool mayBeCut) const {
-        auto decoded = decodeNode(reader_.metadata(), node);
+        auto decoded = decodeNode(reader_.metadata(), node, options_.gate);
         if (!decoded)
             return decoded.error().at(name_);
         PointBatch& batch = *decoded;
@@ -190,13 +182,15 @@ class Walk {
         chosen.level = node.entry.key.level;
         chosen.nodePoints = batch.size();
         chosen.tested = tested;
-        if (tested)
-            batch = test(node.entry, std::move(batch), chosen.dropped);
+        if (tested) {
+            STIPPLE_TRY(kept, test(node.entry, std::move(batch), chosen.dropped));
+            batch = std::move(kept);
+        }
         chosen.taken = batch.size();
         if (!sink_)
             return chosen;
         if (!derived_.empty()) {
-            auto places = filter_.placesAlong(node.entry, batch.positions);
+            STIPPLE_TRY(places, filter_.placesAlong(node.entry, batch.positions, options_.gate));
             for (int attribute : derived_)
                 batch.columns.push_back(
                     places[static_cast<std::size_t>(attribute) - schema().attributes.size()]);
@@ -205,16 +199,20 @@ class Walk {
             chosen.batch = std::move(batch);
             return chosen;
         }
-        STIPPLE_TRY(encoded, sink_->encode(std::move(batch)));
-        chosen.encoded = std::move(encoded);
+        auto keep = [&chosen](EncodedPoints encoded) -> Status {
+            chosen.encoded.push_back(std::move(encoded));
+            return {};
+        };
+        std::size_t count = batch.size();
+        STIPPLE_CHECK(encodeInPieces(*sink_, std::move(batch), count, options_.gate, keep));
         return chosen;
     }
 
-    PointBatch test(const NodeEntry& entry, PointBatch batch, CloudFilter::Dropped& dropped) const {
+    Result<PointBatch> test(const NodeEntry& entry, PointBatch batch, CloudFilter::Dropped& dropped) const {
         std::vector<const Bytes*> columns;
         for (std::size_t place : testedPlaces_)
             columns.push_back(&batch.columns[place]);
-        std::vector<std::uint32_t> rows = filter_.select(entry, batch.positions, columns, dropped);
+        STIPPLE_TRY(rows, filter_.select(entry, batch.positions, columns, dropped, options_.gate));
         if (rows.size() == batch.size()) {
             batch.columns.resize(stored_.size());
             return batch;
@@ -222,19 +220,23 @@ class Walk {
         return pick(batch, rows);
     }
 
-    PointBatch pick(const PointBatch& batch, const std::vector<std::uint32_t>& rows) const {
+    Result<PointBatch> pick(const PointBatch& batch, std::span<const std::uint32_t> rows) const {
         PointBatch picked;
         picked.positions.reserve(rows.size());
-        for (std::uint32_t row : rows)
-            picked.positions.push_back(batch.positions[row]);
         for (std::size_t i = 0; i < stored_.size(); ++i)
-            picked.columns.push_back(rowsOf(batch.columns[i], rows, sizes_[i]));
+            picked.columns.emplace_back(rows.size() * sizes_[i]);
+        STIPPLE_CHECK(inPieces(options_.gate, rows.size(), [&](std::size_t first, std::size_t end) {
+            auto piece = rows.subspan(first, end - first);
+            for (std::uint32_t row : piece)
+                picked.positions.push_back(batch.positions[row]);
+            for (std::size_t i = 0; i < stored_.size(); ++i)
+                gather(batch.columns[i], piece, sizes_[i], picked.columns[i].data() + first * sizes_[i]);
+        }));
         return picked;
     }
 
     Status takeOne() {
-        if (options_.stop && *options_.stop)
-            return Error{ErrorCode::cancelled, "interrupted", "", ""};
+        STIPPLE_CHECK(askGate(options_.gate, 0));
         auto result = work_.take();
         if (!result)
             return result.error();
@@ -249,10 +251,12 @@ class Walk {
         counters_.dropped.bySpacing += chosen.dropped.bySpacing;
         counters_.dropped.byRegion += chosen.dropped.byRegion;
         counters_.dropped.byAttribute += chosen.dropped.byAttribute;
-        if (chosen.encoded)
-            STIPPLE_CHECK(sink_->write(std::move(*chosen.encoded)));
-        else if (sink_)
-            STIPPLE_CHECK(writeInParts(chosen.batch, chosen.taken));
+        for (EncodedPoints& encoded : chosen.encoded)
+            STIPPLE_CHECK(write(std::move(encoded)));
+        if (sink_ && chosen.encoded.empty())
+            STIPPLE_CHECK(encodeInPieces(*sink_, std::move(chosen.batch),
+                                         static_cast<std::size_t>(chosen.taken), options_.gate,
+                                         [this](EncodedPoints part) { return write(std::move(part)); }));
         if (options_.progress)
             options_.progress(pointsDone_);
         return {};
@@ -265,23 +269,9 @@ class Walk {
         chosen.taken = left;
     }
 
-    // The first `size` points.
-    Status writeInParts(const PointBatch& batch, std::size_t size) {
-        for (std::size_t first = 0; first < size; first += maxPointsEncoded) {
-            if (options_.stop && *options_.stop)
-                return Error{ErrorCode::cancelled, "interrupted", "", ""};
-            std::size_t count = std::min(maxPointsEncoded, size - first);
-            PointBatch part;
-            part.positions.assign(batch.positions.begin() + static_cast<std::ptrdiff_t>(first),
-                                  batch.positions.begin() + static_cast<std::ptrdiff_t>(first + count));
-            for (std::size_t i = 0; i < sinkAttributes_.size(); ++i) {
-                const std::uint8_t* from = batch.columns[i].data() + first * sizes_[i];
-                part.columns.emplace_back(from, from + count * sizes_[i]);
-            }
-            STIPPLE_TRY(encoded, sink_->encode(std::move(part)));
-            STIPPLE_CHECK(sink_->write(std::move(encoded)));
-        }
-        return {};
+    Status write(EncodedPoints encoded) {
+        STIPPLE_CHECK(askGate(options_.gate, encoded.count));
+        return sink_->write(std::move(encoded));
     }
 
     CloudReader& reader_;
@@ -322,8 +312,7 @@ Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, 
 Result<NodeTally> tallyNodes(CloudReader& reader, const CloudFilter& filter, const WalkOptions& options) {
     NodeTally tally;
     auto visited = reader.visitWanted([&](const NodeEntry& entry) -> Result<bool> {
-        if (options.stop && *options.stop)
-            return Error{ErrorCode::cancelled, "interrupted", "", ""};
+        STIPPLE_CHECK(askGate(options.gate, 0));
         CloudFilter::Verdict verdict = filter.verdictOn(entry);
         if (verdict == CloudFilter::Verdict::whole || verdict == CloudFilter::Verdict::tested)
             tally.add(entry);

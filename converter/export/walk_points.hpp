@@ -7,10 +7,10 @@
 
 #include "converter/export/cloud_filter.hpp"
 #include "converter/export/point_sink.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_file.hpp"
 
 #include <array>
-#include <atomic>
 #include <functional>
 
 namespace stipple {
@@ -54,7 +54,9 @@ struct WalkOptions {
     // Of the points wanted, the first so many in the order of the file (coarse nodes come first); 0: all.
     // Nodes behind them are not read, but for a few that were begun already.
     std::uint64_t limit = 0;
-    const std::atomic<bool>* stop = nullptr; // once true, the walk ends with `cancelled`
+    // Once closed, the walk ends with `cancelled`, before another piece of points is decoded, tested or
+    // written (WorkGate::pieceItems for each thread).
+    const WorkGate* gate = nullptr;
     // Points of the nodes done with. Called on the calling thread.
     std::function<void(std::uint64_t points)> progress = nullptr;
 };

@@ -92,7 +92,7 @@ Result<NearestRequest> nearestRequestOf(const ApiCall& call) {
 
 // The attributes of the points, and their world coordinates, as the rows that JSON exports have.
 Result<Json> rowsOf(CloudReader& reader, const std::vector<RankedPoint>& points,
-                    const std::vector<int>& attributes) {
+                    const std::vector<int>& attributes, const WorkGate& gate) {
     SinkInput input{reader.metadata(), attributes};
     PointBatch batch;
     batch.resize(input.schema(), points.size());
@@ -104,7 +104,7 @@ Result<Json> rowsOf(CloudReader& reader, const std::vector<RankedPoint>& points,
         if (isKnown) // copied with the first of its node
             continue;
         STIPPLE_TRY(bytes, reader.fetchNode(points[i].node, attributes));
-        STIPPLE_TRY(node, decodeNode(reader.metadata(), bytes));
+        STIPPLE_TRY(node, decodeNode(reader.metadata(), bytes, &gate));
         for (std::size_t k = i; k < points.size(); ++k) {
             if (points[k].node.key != points[i].node.key)
                 continue;
@@ -148,9 +148,10 @@ class NearestAnswer {
     Status answer(AnswerWriter& writer) const {
         auto source = cloud_->openSource();
         auto reader = CloudReader::over(*source, cloud_->header, cloud_->metadata);
-        STIPPLE_TRY(found, nearestPoints(*reader, "the cloud", filter_, *request_.rank, request_.count,
-                                         &writer.isStopped()));
-        STIPPLE_TRY(document, documentOf(*reader, found));
+        StopGate gate(&writer.isStopped());
+        STIPPLE_TRY(found,
+                    nearestPoints(*reader, "the cloud", filter_, *request_.rank, request_.count, &gate));
+        STIPPLE_TRY(document, documentOf(*reader, found, gate));
         HttpResponse response = head_;
         response.body.emplace_back(document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
         writer.answer(std::move(response));
@@ -158,9 +159,9 @@ class NearestAnswer {
     }
 
   private:
-    Result<Json> documentOf(CloudReader& reader, const NearestPoints& found) const {
+    Result<Json> documentOf(CloudReader& reader, const NearestPoints& found, const WorkGate& gate) const {
         const CloudMetadata& metadata = reader.metadata();
-        STIPPLE_TRY(rows, rowsOf(reader, found.points, request_.points.attributes));
+        STIPPLE_TRY(rows, rowsOf(reader, found.points, request_.points.attributes, gate));
         Json points = Json::array();
         for (std::size_t i = 0; i < found.points.size(); ++i) {
             const RankedPoint& point = found.points[i];

@@ -51,7 +51,8 @@ Status storedFromSource(const NodeAnswer& answer, const NodeEntry& entry, ByteSo
 }
 
 Status decoded(const NodeAnswer& answer, const NodeEntry& entry, ByteSource& source, AnswerWriter& writer) {
-    STIPPLE_TRY(text, nodeFile({*answer.format, answer.id}, *answer.cloud, entry, answer.part, source));
+    StopGate gate(&writer.isStopped());
+    STIPPLE_TRY(text, nodeFile({*answer.format, answer.id}, *answer.cloud, entry, answer.part, source, gate));
     HttpResponse response = answer.head();
     response.body.push_back(std::move(text));
     writer.answer(std::move(response));

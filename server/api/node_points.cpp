@@ -1,5 +1,6 @@
 #include "server/api/node_points.hpp"
 
+#include "converter/export/encode_pieces.hpp"
 #include "converter/export/format_sink.hpp"
 #include "converter/export/json_sink.hpp"
 #include "server/api/point_formats.hpp"
@@ -12,13 +13,13 @@ namespace stipple::server {
 namespace {
 
 Result<PointBatch> readPoints(const CloudVersion& cloud, const NodeEntry& entry, const NodePart& part,
-                              ByteSource& source) {
+                              ByteSource& source, const WorkGate& gate) {
     NodeBytes node{entry, part.attributes, {}, part.strata};
     for (const ByteRange& range : storedRanges(cloud.metadata, entry, part)) {
         STIPPLE_TRY(bytes, readNow(source, range));
         node.bytes.insert(node.bytes.end(), bytes.begin(), bytes.end());
     }
-    return decodeNode(cloud.metadata, node);
+    return decodeNode(cloud.metadata, node, &gate);
 }
 
 // The members of the JSON document before the points.
@@ -62,17 +63,18 @@ Result<std::unique_ptr<PointSink>> openSink(const NodeFile& file, const CloudVer
 } // namespace
 
 Result<std::string> nodeFile(const NodeFile& file, const CloudVersion& cloud, const NodeEntry& entry,
-                             const NodePart& part, ByteSource& source) {
+                             const NodePart& part, ByteSource& source, const WorkGate& gate) {
     if (std::uint32_t count = strataPrefixPoints(entry.pointCount, part.strata); count > maxDecodedPoints)
         return Error{ErrorCode::limitExceeded,
                      cat("this part of the node has ", count, " points, and at most ", maxDecodedPoints,
                          " are decoded at once; ask for fewer strata, or as stored"),
                      "", ""};
-    STIPPLE_TRY(points, readPoints(cloud, entry, part, source));
+    STIPPLE_TRY(points, readPoints(cloud, entry, part, source, gate));
     Bytes bytes;
     STIPPLE_TRY(sink, openSink(file, cloud, entry, part, points, bytes));
-    STIPPLE_TRY(encoded, sink->encode(std::move(points)));
-    STIPPLE_CHECK(sink->write(std::move(encoded)));
+    std::size_t count = points.size();
+    STIPPLE_CHECK(encodeInPieces(*sink, std::move(points), count, &gate,
+                                 [&](EncodedPoints encoded) { return sink->write(std::move(encoded)); }));
     STIPPLE_CHECK(sink->finish());
     return std::string(bytes.begin(), bytes.end());
 }

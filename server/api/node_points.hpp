@@ -4,6 +4,7 @@
 #include "server/api/node_request.hpp"
 #include "server/http/negotiation.hpp"
 #include "server/site/cloud_version.hpp"
+#include "shared/base/work_gate.hpp"
 
 #include <string>
 
@@ -19,8 +20,8 @@ struct NodeFile {
 };
 
 // Reads that part of the node, decodes it and writes it. Errors: limitExceeded (more than maxDecodedPoints);
-// those of reading, of decoding, and of the format.
+// those of reading, of decoding, and of the format; cancelled once the gate is closed.
 Result<std::string> nodeFile(const NodeFile& file, const CloudVersion& cloud, const NodeEntry& entry,
-                             const NodePart& part, ByteSource& source);
+                             const NodePart& part, ByteSource& source, const WorkGate& gate);
 
 } // namespace stipple::server

@@ -69,12 +69,12 @@ class BoundedSink final : public ByteSink {
 class PointFileWriter {
   public:
     PointFileWriter(const PointFile& file, AnswerWriter& writer)
-        : file_(file), writer_(writer), source_(file.cloud->openSource()),
+        : file_(file), writer_(writer), gate_(&writer.isStopped()), source_(file.cloud->openSource()),
           reader_(CloudReader::over(*source_, file.cloud->header, file.cloud->metadata)),
           input_{file.metadata, file.attributes} {
         walk_.threads = file.limits.threads;
         walk_.limit = file.request.limit;
-        walk_.stop = &writer.isStopped();
+        walk_.gate = &gate_;
     }
 
     Status write() {
@@ -157,6 +157,7 @@ class PointFileWriter {
 
     const PointFile& file_;
     AnswerWriter& writer_;
+    const StopGate gate_;
     const std::string name_ = "the cloud";
     std::unique_ptr<ByteSource> source_;
     std::unique_ptr<CloudReader> reader_;

@@ -102,8 +102,7 @@ Result<StatisticsAnswer> toldByFile(const StatisticsJob& job, CloudReader& reade
     for (int attribute : job.attributes)
         answer.statistics.push_back({ofStored(job, attribute), {}});
     auto visited = reader.visitWanted([&](const NodeEntry& entry) -> Result<bool> {
-        if (*walk.stop)
-            return Error{ErrorCode::cancelled, "interrupted", "", ""};
+        STIPPLE_CHECK(askGate(walk.gate, 0));
         LevelCount& level = answer.levels[static_cast<std::size_t>(entry.key.level)];
         level.nodes += entry.pointCount > 0;
         level.points += entry.pointCount;
@@ -139,7 +138,8 @@ Status answerJob(const StatisticsJob& job, AnswerWriter& writer) {
     auto reader = CloudReader::over(*source, job.cloud->header, job.metadata());
     WalkOptions walk;
     walk.threads = job.limits.threads;
-    walk.stop = &writer.isStopped();
+    StopGate gate(&writer.isStopped());
+    walk.gate = &gate;
     auto answer = isToldByFile(job) ? toldByFile(job, *reader, walk) : computed(job, *reader, walk);
     if (!answer)
         return answer.error();

@@ -98,30 +98,35 @@ struct Lanes {
 
 // The residuals of every channel; lanes that a channel count leaves free are zero.
 template <class Word>
-Status readResiduals(ByteReader& from, std::size_t channels, std::vector<Word>& to) {
+Status readResiduals(ByteReader& from, std::size_t channels, const WorkGate* gate, std::vector<Word>& to) {
     constexpr int bits = Lanes<Word>::bits;
     Bytes plane(to.size());
     for (std::size_t c = 0; c < channels; ++c)
         for (int byte = 0; byte < bits; byte += 8) {
             STIPPLE_CHECK(readFullSection(from, plane));
             int shift = byte + bits * static_cast<int>(channels == 1 ? 0 : channelOrder[c]);
-            for (std::size_t j = 0; j < to.size(); ++j)
-                to[j] |= Word{plane[j]} << shift;
+            STIPPLE_CHECK(inPieces(gate, to.size(), [&](std::size_t first, std::size_t end) {
+                for (std::size_t j = first; j < end; ++j)
+                    to[j] |= Word{plane[j]} << shift;
+            }));
         }
     return {};
 }
 
 // Puts the new points between the known ones.
 template <class Word>
-void merge(std::vector<Word>& known, std::span<const Word> fresh) {
+Status merge(std::vector<Word>& known, std::span<const Word> fresh, const WorkGate* gate) {
     std::vector<Word> merged(known.size() + fresh.size());
-    for (std::size_t j = 0; j < fresh.size(); ++j) {
-        merged[2 * j] = known[j];
-        merged[2 * j + 1] = fresh[j];
-    }
+    STIPPLE_CHECK(inPieces(gate, fresh.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t j = first; j < end; ++j) {
+            merged[2 * j] = known[j];
+            merged[2 * j + 1] = fresh[j];
+        }
+    }));
     if (known.size() > fresh.size())
         merged.back() = known.back();
     known.swap(merged);
+    return {};
 }
 
 } // namespace
@@ -166,8 +171,8 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, int cha
         encodeAs<std::uint8_t>(to, values, count, shiftOf(width), stratum, choices);
 }
 
-ColourDecoder::ColourDecoder(std::uint32_t pointCount, int channels, int strata)
-    : pointCount_(pointCount), channels_(static_cast<std::size_t>(channels)) {
+ColourDecoder::ColourDecoder(std::uint32_t pointCount, int channels, int strata, const WorkGate* gate)
+    : gate_(gate), pointCount_(pointCount), channels_(static_cast<std::size_t>(channels)) {
     values_.reserve(strataPrefixPoints(pointCount, strata) * channels_);
 }
 
@@ -185,61 +190,80 @@ Status ColourDecoder::decode(int stratum, ByteReader& from, NeighbourChoices cho
 template <class Word>
 Status ColourDecoder::decodeAs(std::vector<Word>& known, int stratum, ByteReader& from,
                                NeighbourChoices choices) {
-    using Lane = Lanes<Word>;
     auto coding = from.read<Coding>();
     if (!from.ok() || coding > Coding::plain || (coding == Coding::plain && channels_ != 1))
         return Error{ErrorCode::corrupt, "unknown way to store colours", {}, {}};
     std::vector<Word> fresh(stratumPoints(pointCount_, stratum));
-    STIPPLE_CHECK(readResiduals(from, channels_, fresh));
-    if (coding == Coding::predicted && channels_ == 3) {
+    STIPPLE_CHECK(readResiduals(from, channels_, gate_, fresh));
+    if (coding == Coding::predicted)
+        STIPPLE_CHECK(predict(known, stratum, choices, fresh));
+    STIPPLE_CHECK(append<Word>(fresh));
+    if (stratum > 0)
+        return merge<Word>(known, fresh, gate_);
+    known = std::move(fresh);
+    return {};
+}
+
+// From residuals to values.
+template <class Word>
+Status ColourDecoder::predict(const std::vector<Word>& known, int stratum, NeighbourChoices choices,
+                              std::vector<Word>& fresh) const {
+    using Lane = Lanes<Word>;
+    if (channels_ == 3) {
         constexpr Word exceptGreen = static_cast<Word>(~(Lane::mask << Lane::bits));
-        for (Word& word : fresh) // green's residual is part of those of red and blue
-            word = Lane::add(word, ((word >> Lane::bits) & Lane::mask) * (Lane::one & exceptGreen));
+        STIPPLE_CHECK(inPieces(gate_, fresh.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j) // green's residual is part of those of red and blue
+                fresh[j] =
+                    Lane::add(fresh[j], ((fresh[j] >> Lane::bits) & Lane::mask) * (Lane::one & exceptGreen));
+        }));
     }
-    if (coding == Coding::predicted && stratum == 0) {
-        Word before = 0;
-        for (Word& word : fresh)
-            before = word = Lane::add(word, before);
-    } else if (coding == Coding::predicted) {
-        std::size_t pairs = std::min(fresh.size(), known.size() - 1);
-        for (std::size_t j = 0; j < pairs; ++j) {
+    if (stratum == 0) {
+        Word last = 0;
+        return inPieces(gate_, fresh.size(), [&](std::size_t begin, std::size_t end) {
+            Word before = last;
+            for (std::size_t j = begin; j < end; ++j)
+                before = fresh[j] = Lane::add(fresh[j], before);
+            last = before;
+        });
+    }
+    std::size_t pairs = std::min(fresh.size(), known.size() - 1);
+    STIPPLE_CHECK(inPieces(gate_, pairs, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
             Word a = known[j], b = known[j + 1];
             Word first = choices[j] == NeighbourChoice::upper ? b : a;
             Word second = choices[j] == NeighbourChoice::lower ? a : b;
             fresh[j] = Lane::add(fresh[j], Lane::mean(first, second));
         }
-        if (pairs < fresh.size()) // the last point may have no upper neighbour
-            fresh[pairs] = Lane::add(fresh[pairs], known[pairs]);
-    }
-    append<Word>(fresh);
-    if (stratum == 0)
-        known = std::move(fresh);
-    else
-        merge<Word>(known, fresh);
+    }));
+    if (pairs < fresh.size()) // the last point may have no upper neighbour
+        fresh[pairs] = Lane::add(fresh[pairs], known[pairs]);
     return {};
 }
 
 // Appends a stratum's values in progressive order.
 template <class Word>
-void ColourDecoder::append(std::span<const Word> fresh) {
+Status ColourDecoder::append(std::span<const Word> fresh) {
     using Lane = Lanes<Word>;
     Word unit = unitOf(width_);
     std::size_t start = values_.size();
     values_.resize(start + fresh.size() * channels_);
-    std::uint16_t* to = values_.data() + start;
-    std::vector<std::uint32_t> order = bitReversedOrder(static_cast<std::uint32_t>(fresh.size()));
-    if (channels_ == 1) {
-        for (std::uint32_t j : order)
-            *to++ = static_cast<std::uint16_t>(fresh[j] * unit);
-        return;
-    }
-    for (std::uint32_t j : order) {
-        Word word = fresh[j];
-        to[0] = static_cast<std::uint16_t>((word & Lane::mask) * unit);
-        to[1] = static_cast<std::uint16_t>(((word >> Lane::bits) & Lane::mask) * unit);
-        to[2] = static_cast<std::uint16_t>((word >> (2 * Lane::bits)) * unit);
-        to += 3;
-    }
+    std::uint16_t* values = values_.data() + start;
+    STIPPLE_TRY(order, bitReversedOrder(static_cast<std::uint32_t>(fresh.size()), gate_));
+    const std::uint32_t* places = order.data();
+    if (channels_ == 1)
+        return inPieces(gate_, fresh.size(), [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                values[i] = static_cast<std::uint16_t>(fresh[places[i]] * unit);
+        });
+    return inPieces(gate_, fresh.size(), [&](std::size_t begin, std::size_t end) {
+        std::uint16_t* to = values + 3 * begin;
+        for (std::size_t i = begin; i < end; ++i, to += 3) {
+            Word word = fresh[places[i]];
+            to[0] = static_cast<std::uint16_t>((word & Lane::mask) * unit);
+            to[1] = static_cast<std::uint16_t>(((word >> Lane::bits) & Lane::mask) * unit);
+            to[2] = static_cast<std::uint16_t>((word >> (2 * Lane::bits)) * unit);
+        }
+    });
 }
 
 } // namespace stipple

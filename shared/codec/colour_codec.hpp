@@ -5,6 +5,7 @@
 
 #include "shared/base/bytes.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/codec/neighbour_choice.hpp"
 #include "shared/format/node_entry.hpp"
 
@@ -35,8 +36,8 @@ void encodeColour(ByteWriter& to, std::span<const std::uint16_t> values, int cha
 class ColourDecoder {
   public:
     // For the first `strata` strata. Takes up to 32 bytes of memory a point; the caller has bounded their
-    // number.
-    ColourDecoder(std::uint32_t pointCount, int channels, int strata);
+    // number. Everything ends with `cancelled` once the gate is closed.
+    ColourDecoder(std::uint32_t pointCount, int channels, int strata, const WorkGate* gate = nullptr);
 
     // Stratum `stratum`; in ascending order, and only those that have points. Errors: truncated, corrupt.
     Status decode(int stratum, ByteReader& from, NeighbourChoices choices);
@@ -47,8 +48,12 @@ class ColourDecoder {
     template <class Word>
     Status decodeAs(std::vector<Word>& known, int stratum, ByteReader& from, NeighbourChoices choices);
     template <class Word>
-    void append(std::span<const Word> fresh);
+    Status predict(const std::vector<Word>& known, int stratum, NeighbourChoices choices,
+                   std::vector<Word>& fresh) const;
+    template <class Word>
+    Status append(std::span<const Word> fresh);
 
+    const WorkGate* gate_;
     std::uint32_t pointCount_;
     std::size_t channels_;
     ColourWidth width_ = ColourWidth::wide;

@@ -62,22 +62,25 @@ void writeRanked(ByteWriter& to, const std::vector<T>& values) {
 }
 
 template <class T>
-Status readRanked(ByteReader& from, std::span<T> values) {
+Status readRanked(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     std::uint64_t count = readVarint(from);
     if (!from.ok() || count > values.size())
         return Error{
             ErrorCode::corrupt, cat(count, " distinct values of ", values.size(), " points"), {}, {}};
     std::vector<T> distinct(static_cast<std::size_t>(count));
-    STIPPLE_CHECK(readPlanes<T>(from, distinct));
+    STIPPLE_CHECK(readPlanes<T>(from, distinct, gate));
     auto readRanks = [&]<class R>(R) -> Status {
         std::vector<R> ranks(values.size());
-        STIPPLE_CHECK(readPlanes<R>(from, ranks));
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            if (ranks[i] >= distinct.size())
-                return Error{ErrorCode::corrupt, "a value's rank is past the last distinct value", {}, {}};
-            values[i] = distinct[ranks[i]];
-        }
-        return {};
+        STIPPLE_CHECK(readPlanes<R>(from, ranks, gate));
+        return inPieces(gate, values.size(), [&](std::size_t first, std::size_t end) -> Status {
+            for (std::size_t i = first; i < end; ++i) {
+                if (ranks[i] >= distinct.size())
+                    return Error{
+                        ErrorCode::corrupt, "a value's rank is past the last distinct value", {}, {}};
+                values[i] = distinct[ranks[i]];
+            }
+            return {};
+        });
     };
     return count <= 1u << 8    ? readRanks(std::uint8_t{})
            : count <= 1u << 16 ? readRanks(std::uint16_t{})
@@ -116,7 +119,7 @@ void encodeComponent(ByteWriter& to, const std::vector<T>& values) {
 }
 
 template <class T>
-Status decodeComponent(ByteReader& from, std::span<T> values) {
+Status decodeComponent(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     auto method = from.read<Method>();
     if (!from.ok())
         return Error{ErrorCode::truncated, "an attribute ends early", {}, {}};
@@ -129,21 +132,25 @@ Status decodeComponent(ByteReader& from, std::span<T> values) {
     case Method::plain:
         return readFullSection(from, {reinterpret_cast<std::uint8_t*>(values.data()), values.size_bytes()});
     case Method::planes:
-        return readPlanes<T>(from, values);
+        return readPlanes<T>(from, values, gate);
     case Method::ranked:
-        return readRanked<T>(from, values);
+        return readRanked<T>(from, values, gate);
     }
     return Error{ErrorCode::corrupt, "unknown way to store an attribute", {}, {}};
 }
 
 template <class T>
-Result<Bytes> decodeAs(ByteReader& from, std::size_t pointCount, std::size_t components) {
+Result<Bytes> decodeAs(ByteReader& from, std::size_t pointCount, std::size_t components,
+                       const WorkGate* gate) {
     Bytes values(pointCount * components * sizeof(T));
     std::vector<T> own(pointCount);
     for (std::size_t c = 0; c < components; ++c) {
-        STIPPLE_CHECK(decodeComponent<T>(from, own));
-        for (std::size_t i = 0; i < pointCount; ++i)
-            storeLe(values.data() + (i * components + c) * sizeof(T), own[i]);
+        STIPPLE_CHECK(askGate(gate, 0));
+        STIPPLE_CHECK(decodeComponent<T>(from, own, gate));
+        STIPPLE_CHECK(inPieces(gate, pointCount, [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i)
+                storeLe(values.data() + (i * components + c) * sizeof(T), own[i]);
+        }));
     }
     return values;
 }
@@ -171,16 +178,16 @@ void encodeColumn(ByteWriter& to, ByteSpan values, std::size_t width, std::size_
 }
 
 Result<Bytes> decodeColumn(ByteReader& from, std::size_t pointCount, std::size_t width,
-                           std::size_t components) {
+                           std::size_t components, const WorkGate* gate) {
     switch (width) {
     case 1:
-        return decodeAs<std::uint8_t>(from, pointCount, components);
+        return decodeAs<std::uint8_t>(from, pointCount, components, gate);
     case 2:
-        return decodeAs<std::uint16_t>(from, pointCount, components);
+        return decodeAs<std::uint16_t>(from, pointCount, components, gate);
     case 4:
-        return decodeAs<std::uint32_t>(from, pointCount, components);
+        return decodeAs<std::uint32_t>(from, pointCount, components, gate);
     default:
-        return decodeAs<std::uint64_t>(from, pointCount, components);
+        return decodeAs<std::uint64_t>(from, pointCount, components, gate);
     }
 }
 

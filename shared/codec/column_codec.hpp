@@ -4,6 +4,7 @@
 
 #include "shared/base/bytes.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 
 namespace stipple {
 
@@ -11,8 +12,9 @@ namespace stipple {
 // Each component is written in whichever way is smallest.
 void encodeColumn(ByteWriter& to, ByteSpan values, std::size_t width, std::size_t components);
 
-// Decodes `pointCount` points; the caller has bounded the count. Errors: truncated, corrupt.
+// Decodes `pointCount` points; the caller has bounded the count. Errors: truncated, corrupt; cancelled once
+// the gate is closed.
 Result<Bytes> decodeColumn(ByteReader& from, std::size_t pointCount, std::size_t width,
-                           std::size_t components);
+                           std::size_t components, const WorkGate* gate = nullptr);
 
 } // namespace stipple

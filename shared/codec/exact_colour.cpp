@@ -55,19 +55,21 @@ void encodeAs(ByteWriter& to, std::span<const std::uint16_t> exact, std::span<co
 }
 
 template <class T>
-Status readPlane(ByteReader& from, std::vector<T>& values) {
+Status readPlane(ByteReader& from, std::vector<T>& values, const WorkGate* gate) {
     Bytes part(values.size());
     for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
         STIPPLE_CHECK(readFullSection(from, part));
-        for (std::size_t i = 0; i < part.size(); ++i)
-            values[i] = static_cast<T>(values[i] | part[i] << (8 * byte));
+        STIPPLE_CHECK(inPieces(gate, part.size(), [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i)
+                values[i] = static_cast<T>(values[i] | part[i] << (8 * byte));
+        }));
     }
     return {};
 }
 
 template <class T>
 Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::size_t channels,
-                ColourWidth width, std::span<std::uint16_t> colours) {
+                ColourWidth width, std::span<std::uint16_t> colours, const WorkGate* gate) {
     auto coding = from.read<Coding>();
     if (!from.ok() || coding > Coding::plain)
         return Error{ErrorCode::corrupt, "unknown way to store exact colours", {}, {}};
@@ -77,14 +79,17 @@ Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::siz
     for (std::size_t c = 0; c < channels; ++c) {
         std::size_t channel = channels == 1 ? 0 : channelOrder[c];
         std::vector<T> own(order.size());
-        STIPPLE_CHECK(readPlane(from, own));
-        for (std::size_t i = 0; i * channels < colours.size(); ++i) {
-            std::uint16_t& value = colours[i * channels + channel];
-            T part = own[order[i]];
-            if (coding == Coding::residual)
-                part = static_cast<T>(part + (value >> shift) + (c > 0 ? green[order[i]] : T{}));
-            value = static_cast<std::uint16_t>(part * unit);
-        }
+        STIPPLE_CHECK(readPlane(from, own, gate));
+        const std::size_t points = (colours.size() + channels - 1) / channels;
+        STIPPLE_CHECK(inPieces(gate, points, [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i) {
+                std::uint16_t& value = colours[i * channels + channel];
+                T part = own[order[i]];
+                if (coding == Coding::residual)
+                    part = static_cast<T>(part + (value >> shift) + (c > 0 ? green[order[i]] : T{}));
+                value = static_cast<std::uint16_t>(part * unit);
+            }
+        }));
         if (c == 0)
             green = std::move(own);
     }
@@ -105,13 +110,13 @@ void writeExactColour(ByteWriter& to, std::span<const std::uint16_t> exact,
 }
 
 Status readExactColour(ByteReader& from, std::span<const std::uint32_t> order, int channels,
-                       std::span<std::uint16_t> colours) {
+                       std::span<std::uint16_t> colours, const WorkGate* gate) {
     auto width = from.read<ColourWidth>();
     if (!from.ok() || width > ColourWidth::repeated)
         return Error{ErrorCode::corrupt, cat("unknown colour width ", static_cast<int>(width)), {}, {}};
     auto count = static_cast<std::size_t>(channels);
-    return width == ColourWidth::wide ? decodeAs<std::uint16_t>(from, order, count, width, colours)
-                                      : decodeAs<std::uint8_t>(from, order, count, width, colours);
+    return width == ColourWidth::wide ? decodeAs<std::uint16_t>(from, order, count, width, colours, gate)
+                                      : decodeAs<std::uint8_t>(from, order, count, width, colours, gate);
 }
 
 } // namespace stipple

@@ -4,6 +4,7 @@
 
 #include "shared/base/bytes.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/codec/colour_codec.hpp"
 
 #include <cstdint>
@@ -18,8 +19,8 @@ void writeExactColour(ByteWriter& to, std::span<const std::uint16_t> exact,
 
 // Replaces the shown colours by the exact ones. `order` is of all the node's points, in an order of the
 // caller's: the i-th is order[i]-th in Morton order. `colours` are of them, or of the first of them only.
-// Errors: truncated, corrupt. Memory: 8 bytes a point.
+// Errors: truncated, corrupt; cancelled once the gate is closed. Memory: 8 bytes a point.
 Status readExactColour(ByteReader& from, std::span<const std::uint32_t> order, int channels,
-                       std::span<std::uint16_t> colours);
+                       std::span<std::uint16_t> colours, const WorkGate* gate = nullptr);
 
 } // namespace stipple

@@ -100,33 +100,38 @@ void writePlanes(ByteWriter& to, std::span<const T> values) {
 }
 
 template <class T>
-Status readPlanes(ByteReader& from, std::span<T> values) {
+Status readPlanes(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     auto mode = from.read<std::uint8_t>();
     if (!from.ok() || mode > 1)
         return Error{ErrorCode::corrupt, "unknown way to store planes", {}, {}};
     Bytes plane(values.size());
     for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
         STIPPLE_CHECK(readFullSection(from, plane));
-        for (std::size_t i = 0; i < plane.size(); ++i)
-            values[i] = static_cast<T>(byte == 0 ? T{plane[i]}
-                                                 : values[i] | static_cast<T>(T{plane[i]} << (8 * byte)));
+        STIPPLE_CHECK(inPieces(gate, plane.size(), [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i)
+                values[i] = static_cast<T>(byte == 0 ? T{plane[i]}
+                                                     : values[i] | static_cast<T>(T{plane[i]} << (8 * byte)));
+        }));
     }
-    if (mode == 1) {
-        T before = 0;
-        for (T& value : values)
+    if (mode == 0)
+        return {};
+    T last = 0;
+    return inPieces(gate, values.size(), [&](std::size_t first, std::size_t end) {
+        T before = last;
+        for (T& value : values.subspan(first, end - first))
             before = value =
                 static_cast<T>(before + static_cast<T>((value >> 1) ^ static_cast<T>(T{0} - (value & 1))));
-    }
-    return {};
+        last = before;
+    });
 }
 
 template void writePlanes<std::uint8_t>(ByteWriter&, std::span<const std::uint8_t>);
 template void writePlanes<std::uint16_t>(ByteWriter&, std::span<const std::uint16_t>);
 template void writePlanes<std::uint32_t>(ByteWriter&, std::span<const std::uint32_t>);
 template void writePlanes<std::uint64_t>(ByteWriter&, std::span<const std::uint64_t>);
-template Status readPlanes<std::uint8_t>(ByteReader&, std::span<std::uint8_t>);
-template Status readPlanes<std::uint16_t>(ByteReader&, std::span<std::uint16_t>);
-template Status readPlanes<std::uint32_t>(ByteReader&, std::span<std::uint32_t>);
-template Status readPlanes<std::uint64_t>(ByteReader&, std::span<std::uint64_t>);
+template Status readPlanes<std::uint8_t>(ByteReader&, std::span<std::uint8_t>, const WorkGate*);
+template Status readPlanes<std::uint16_t>(ByteReader&, std::span<std::uint16_t>, const WorkGate*);
+template Status readPlanes<std::uint32_t>(ByteReader&, std::span<std::uint32_t>, const WorkGate*);
+template Status readPlanes<std::uint64_t>(ByteReader&, std::span<std::uint64_t>, const WorkGate*);
 
 } // namespace stipple

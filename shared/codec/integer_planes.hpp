@@ -5,6 +5,7 @@
 //   section  of the lowest bytes, then of each higher byte
 #pragma once
 
+#include "shared/base/work_gate.hpp"
 #include "shared/codec/section.hpp"
 
 namespace stipple {
@@ -13,8 +14,8 @@ namespace stipple {
 template <class T>
 void writePlanes(ByteWriter& to, std::span<const T> values);
 
-// Fills `values`. Errors: truncated, corrupt.
+// Fills `values`. Errors: truncated, corrupt; cancelled once the gate is closed.
 template <class T>
-Status readPlanes(ByteReader& from, std::span<T> values);
+Status readPlanes(ByteReader& from, std::span<T> values, const WorkGate* gate = nullptr);
 
 } // namespace stipple

@@ -7,6 +7,7 @@
 
 #include "shared/base/bytes.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/codec/bit_stream.hpp"
 #include "shared/codec/key_layout.hpp"
 #include "shared/codec/neighbour_choice.hpp"
@@ -37,8 +38,9 @@ std::vector<NeighbourChoice> neighbourChoices(std::span<const std::uint64_t> key
 class PositionDecoder {
   public:
     // For the first `strata` strata of a node of `pointCount` points, at most 2^nodeBits steps wide.
-    // Takes 32 bytes of memory a point; the caller has bounded their number.
-    PositionDecoder(std::uint32_t pointCount, int nodeBits, int strata);
+    // Takes 32 bytes of memory a point; the caller has bounded their number. Everything ends with `cancelled`
+    // once the gate is closed.
+    PositionDecoder(std::uint32_t pointCount, int nodeBits, int strata, const WorkGate* gate = nullptr);
 
     // Stratum `stratum`, from where encodePositions began to write; in ascending order, and only those that
     // have points. Errors: truncated, corrupt.
@@ -53,10 +55,11 @@ class PositionDecoder {
     Status decodeFirst(BitReader& bits, std::span<const std::uint8_t> tokens);
     Status decodeBetween(int stratum, BitReader& bits, std::span<const std::uint8_t> tokens,
                          std::size_t tokenCount);
-    void decodeLows(int stratum, BitReader& bits);
+    Status decodeLows(int stratum, BitReader& bits);
     template <bool hasLows>
-    bool place(int stratum, const BitPermutation& toPacked, std::span<Vec3<std::uint32_t>> to) const;
+    Result<bool> place(int stratum, const BitPermutation& toPacked, std::span<Vec3<std::uint32_t>> to) const;
 
+    const WorkGate* gate_;
     std::uint32_t pointCount_;
     int nodeBits_, strata_;
     int decoded_ = 0;

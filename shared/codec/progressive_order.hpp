@@ -7,6 +7,7 @@
 // leaving out j >= m. So each prefix of the whole is spread evenly over the node.
 #pragma once
 
+#include "shared/base/work_gate.hpp"
 #include "shared/format/node_entry.hpp"
 
 #include <cstdint>
@@ -29,5 +30,8 @@ inline std::uint32_t stratumStep(int stratum) {
 std::vector<std::uint32_t> bitReversedOrder(std::uint32_t count);
 // Morton index of each place of the progressive order.
 std::vector<std::uint32_t> progressiveOrder(std::uint32_t pointCount);
+// The same; `cancelled` once the gate is closed.
+Result<std::vector<std::uint32_t>> bitReversedOrder(std::uint32_t count, const WorkGate* gate);
+Result<std::vector<std::uint32_t>> progressiveOrder(std::uint32_t pointCount, const WorkGate* gate);
 
 } // namespace stipple

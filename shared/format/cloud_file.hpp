@@ -3,6 +3,7 @@
 #pragma once
 
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/cloud_writer.hpp"
 #include "shared/format/node_entry.hpp"
@@ -55,18 +56,20 @@ Result<std::vector<NodeEntry>> readHierarchyChunk(ByteSource& source, const File
 
 // Decodes the first `strata` strata (1..4) from their bytes (exactly entry.strataRange(strata)). Errors of
 // this and of decodeAttributes name the node, the block and its byte. Memory: bounded by entry.pointCount,
-// which is itself bounded by the bytes that came.
+// which is itself bounded by the bytes that came. All three end with `cancelled` once the gate is closed; the
+// bytes of a section (a byte a point at most) are decompressed in one go.
 Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
-                                  ByteSpan bytes);
+                                  ByteSpan bytes, const WorkGate* gate = nullptr);
 // Decodes further block `block` for all points of the node (exactly entry.attributeRange(block)):
 // one column of raw little-endian values per attribute of the block, in progressive order.
 Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
-                                            std::size_t block, ByteSpan bytes);
+                                            std::size_t block, ByteSpan bytes,
+                                            const WorkGate* gate = nullptr);
 
 // Replaces the colours of a node's picture, of any number of strata, by the exact ones, from the bytes of the
 // block that has them (AttributeBlock::isExactColour; block 0). No bytes: the picture's are exact.
 Status decodeExactColour(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
-                         NodePicture& picture);
+                         NodePicture& picture, const WorkGate* gate = nullptr);
 
 // The bytes of a node that some of its attributes need: the strata (positions and the colour of the picture,
 // which travel with them) and the further blocks that hold the attributes asked for.
@@ -79,8 +82,10 @@ struct NodeBytes {
 // Which blocks those are: indices into attributeBlocks(metadata), ascending.
 std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<const int> attributes);
 // The points of the node's strata in progressive order, grid integers and one column per attribute asked for
-// (batch.columns[i] is NodeBytes::attributes[i]). Pure: any thread. Errors name the node.
-Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node);
+// (batch.columns[i] is NodeBytes::attributes[i]). Pure: any thread. Errors name the node. `cancelled` once
+// the gate is closed, before another piece of points (WorkGate::pieceItems) is handled.
+Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node,
+                              const WorkGate* gate = nullptr);
 
 // What a walk over the hierarchy read of it, and what it left alone.
 struct HierarchyCounters {

@@ -137,16 +137,19 @@ std::vector<std::size_t> placesOf(const std::vector<int>& attributes, int wanted
     return places;
 }
 
-void takeColour(const CloudMetadata& metadata, const NodeBytes& node, const NodePicture& picture,
-                PointBatch& points) {
+Status takeColour(const CloudMetadata& metadata, const NodeBytes& node, const NodePicture& picture,
+                  const WorkGate* gate, PointBatch& points) {
     std::vector<int> colour = pictureAttributes(metadata);
     for (std::size_t c = 0; c < colour.size(); ++c)
         for (std::size_t place : placesOf(node.attributes, colour[c])) {
             Bytes& column = points.columns[place];
             column.resize(2 * picture.size());
-            for (std::size_t i = 0; i < picture.size(); ++i)
-                storeLe(column.data() + 2 * i, picture.colour[i * colour.size() + c]);
+            STIPPLE_CHECK(inPieces(gate, picture.size(), [&](std::size_t first, std::size_t end) {
+                for (std::size_t i = first; i < end; ++i)
+                    storeLe(column.data() + 2 * i, picture.colour[i * colour.size() + c]);
+            }));
         }
+    return {};
 }
 
 } // namespace
@@ -177,7 +180,7 @@ std::vector<std::size_t> blocksHolding(const CloudMetadata& metadata, std::span<
     return holding;
 }
 
-Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node) {
+Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& node, const WorkGate* gate) {
     const NodeEntry& entry = node.entry;
     std::size_t at = 0; // a block that is cut short is the decoder's to report
     auto next = [&](std::uint64_t size) {
@@ -186,21 +189,25 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
         return ByteSpan(node.bytes).subspan(at - take, take);
     };
     STIPPLE_TRY(picture,
-                decodePicture(metadata, entry, node.strata, next(entry.strataRange(node.strata).size)));
+                decodePicture(metadata, entry, node.strata, next(entry.strataRange(node.strata).size), gate));
     PointBatch points;
     Vec3i corner = entry.pointCount > 0 ? metadata.rootCube.nodeMin(entry.key) : Vec3i{};
     points.positions.reserve(picture.size());
-    for (const auto& p : picture.positions)
-        points.positions.push_back(corner + Vec3i{p.x, p.y, p.z});
+    STIPPLE_CHECK(inPieces(gate, picture.size(), [&](std::size_t first, std::size_t end) {
+        for (std::size_t i = first; i < end; ++i) {
+            const auto& p = picture.positions[i];
+            points.positions.push_back(corner + Vec3i{p.x, p.y, p.z});
+        }
+    }));
     points.columns.resize(node.attributes.size());
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     for (std::size_t block : blocksHolding(metadata, node.attributes)) {
         std::uint64_t size = block < entry.attributeBytes.size() ? entry.attributeBytes[block] : 0;
         if (blocks[block].isExactColour) {
-            STIPPLE_CHECK(decodeExactColour(metadata, entry, next(size), picture));
+            STIPPLE_CHECK(decodeExactColour(metadata, entry, next(size), picture, gate));
             continue;
         }
-        STIPPLE_TRY(columns, decodeAttributes(metadata, entry, block, next(size)));
+        STIPPLE_TRY(columns, decodeAttributes(metadata, entry, block, next(size), gate));
         for (std::size_t i = 0; i < columns.size(); ++i) {
             auto attribute = static_cast<std::size_t>(blocks[block].attributes[i]);
             // A block is of all points of the node, in the same order.
@@ -210,7 +217,7 @@ Result<PointBatch> decodeNode(const CloudMetadata& metadata, const NodeBytes& no
                 points.columns[places[p]] = p + 1 < places.size() ? columns[i] : std::move(columns[i]);
         }
     }
-    takeColour(metadata, node, picture, points);
+    STIPPLE_CHECK(takeColour(metadata, node, picture, gate, points));
     return points;
 }
 

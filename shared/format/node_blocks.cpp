@@ -53,16 +53,16 @@ Error corrupt(std::string what) {
 }
 
 Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
-                                 ByteSpan bytes) {
+                                 ByteSpan bytes, const WorkGate* gate) {
     STIPPLE_CHECK(checkSize(bytes, entry.strataRange(strata).size));
     STIPPLE_CHECK(checkEntry(metadata, entry));
     STIPPLE_CHECK(checkPictureAttributes(metadata));
     NodePicture picture;
     if (entry.pointCount == 0)
         return picture;
-    PositionDecoder positions(entry.pointCount, metadata.rootCube.nodeBits(entry.key.level), strata);
+    PositionDecoder positions(entry.pointCount, metadata.rootCube.nodeBits(entry.key.level), strata, gate);
     auto channels = static_cast<int>(pictureAttributes(metadata).size());
-    ColourDecoder colour(entry.pointCount, channels, strata);
+    ColourDecoder colour(entry.pointCount, channels, strata, gate);
     std::size_t at = 0;
     for (int s = 0; s < strata; ++s) {
         std::size_t size = entry.strataBytes[static_cast<std::size_t>(s)];
@@ -94,33 +94,35 @@ Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry&
 }
 
 // From Morton order to progressive order.
-Bytes progressiveColumn(const std::vector<std::uint32_t>& order, const Bytes& sorted, std::size_t size) {
+Result<Bytes> progressiveColumn(const std::vector<std::uint32_t>& order, const Bytes& sorted,
+                                std::size_t size, const WorkGate* gate) {
     Bytes column(sorted.size());
     auto gather = [&](auto width) {
-        for (std::size_t i = 0; i < order.size(); ++i)
-            std::memcpy(column.data() + i * width, sorted.data() + order[i] * width, width);
+        return inPieces(gate, order.size(), [&](std::size_t first, std::size_t end) {
+            for (std::size_t i = first; i < end; ++i)
+                std::memcpy(column.data() + i * width, sorted.data() + order[i] * width, width);
+        });
     };
-    switch (size) { // a constant width lets the compiler turn the copy into one move
-    case 1:
-        gather(std::integral_constant<std::size_t, 1>{});
-        break;
-    case 2:
-        gather(std::integral_constant<std::size_t, 2>{});
-        break;
-    case 4:
-        gather(std::integral_constant<std::size_t, 4>{});
-        break;
-    case 8:
-        gather(std::integral_constant<std::size_t, 8>{});
-        break;
-    default:
-        gather(size);
-    }
+    auto gathered = [&]() -> Status {
+        switch (size) { // a constant width lets the compiler turn the copy into one move
+        case 1:
+            return gather(std::integral_constant<std::size_t, 1>{});
+        case 2:
+            return gather(std::integral_constant<std::size_t, 2>{});
+        case 4:
+            return gather(std::integral_constant<std::size_t, 4>{});
+        case 8:
+            return gather(std::integral_constant<std::size_t, 8>{});
+        default:
+            return gather(size);
+        }
+    };
+    STIPPLE_CHECK(gathered());
     return column;
 }
 
 Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const NodeEntry& entry,
-                                       std::size_t block, ByteSpan bytes) {
+                                       std::size_t block, ByteSpan bytes, const WorkGate* gate) {
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     if (block >= blocks.size() || entry.attributeBytes.size() != blocks.size())
         return Error{ErrorCode::invalidArgument, "the cloud has no such block", {}, {}};
@@ -139,15 +141,16 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
     }
     STIPPLE_TRY(payload, unframeBlock(bytes, "attribute block", entry.attributeRange(block).offset));
     ByteReader reader(payload);
-    std::vector<std::uint32_t> order = progressiveOrder(entry.pointCount);
+    STIPPLE_TRY(order, progressiveOrder(entry.pointCount, gate));
     for (int a : blocks[block].attributes) {
         const Attribute& attribute = attributes[static_cast<std::size_t>(a)];
         auto sorted = decodeColumn(reader, entry.pointCount, attributeTypeSize(attribute.type),
-                                   static_cast<std::size_t>(attribute.components));
+                                   static_cast<std::size_t>(attribute.components), gate);
         if (!sorted)
             return sorted.error().at(cat("attribute \"", attribute.name, "\", block at byte ",
                                          entry.attributeRange(block).offset));
-        columns.push_back(progressiveColumn(order, *sorted, attribute.size()));
+        STIPPLE_TRY(column, progressiveColumn(order, *sorted, attribute.size(), gate));
+        columns.push_back(std::move(column));
     }
     if (reader.remaining() > 0)
         return corrupt(
@@ -156,7 +159,7 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
 }
 
 Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
-                        NodePicture& picture) {
+                        NodePicture& picture, const WorkGate* gate) {
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     std::size_t channels = pictureAttributes(metadata).size();
     if (blocks.empty() || !blocks[0].isExactColour || entry.attributeBytes.size() != blocks.size() ||
@@ -169,8 +172,8 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
         return {};
     STIPPLE_TRY(payload, unframeBlock(bytes, "exact colours", range.offset));
     ByteReader reader(payload);
-    Status decoded = readExactColour(reader, progressiveOrder(entry.pointCount), static_cast<int>(channels),
-                                     picture.colour);
+    STIPPLE_TRY(order, progressiveOrder(entry.pointCount, gate));
+    Status decoded = readExactColour(reader, order, static_cast<int>(channels), picture.colour, gate);
     if (decoded && reader.remaining() > 0)
         decoded = corrupt("bytes are left over");
     return decoded ? decoded : Status(decoded.error().at(cat("exact colours, byte ", range.offset)));
@@ -179,26 +182,26 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
 } // namespace
 
 Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
-                                  ByteSpan bytes) {
+                                  ByteSpan bytes, const WorkGate* gate) {
     if (strata < 1 || strata > strataCount)
         return Error{ErrorCode::invalidArgument, cat("a node has no ", strata, " strata"), {}, {}};
-    auto picture = decodeStrata(metadata, entry, strata, bytes);
+    auto picture = decodeStrata(metadata, entry, strata, bytes, gate);
     if (!picture)
         return picture.error().at("node " + entry.key.text());
     return picture;
 }
 
 Result<std::vector<Bytes>> decodeAttributes(const CloudMetadata& metadata, const NodeEntry& entry,
-                                            std::size_t block, ByteSpan bytes) {
-    auto columns = decodeBlock(metadata, entry, block, bytes);
+                                            std::size_t block, ByteSpan bytes, const WorkGate* gate) {
+    auto columns = decodeBlock(metadata, entry, block, bytes, gate);
     if (!columns)
         return columns.error().at("node " + entry.key.text());
     return columns;
 }
 
 Status decodeExactColour(const CloudMetadata& metadata, const NodeEntry& entry, ByteSpan bytes,
-                         NodePicture& picture) {
-    Status decoded = decodeExactBlock(metadata, entry, bytes, picture);
+                         NodePicture& picture, const WorkGate* gate) {
+    Status decoded = decodeExactBlock(metadata, entry, bytes, picture, gate);
     return decoded ? decoded : Status(decoded.error().at("node " + entry.key.text()));
 }
 

@@ -58,14 +58,16 @@ void checkFilter(const PointFilter& wanted) {
     for (const Bytes& column : columns)
         tested.push_back(&column);
     CloudFilter::Dropped dropped;
-    auto rows = filter.select(root, positions, tested, dropped);
+    auto selected = filter.select(root, positions, tested, dropped);
+    require(selected.ok());
+    const std::vector<std::uint32_t>& rows = *selected;
     require(rows.size() + dropped.bySpacing + dropped.byRegion + dropped.byAttribute == positions.size());
     if (verdict == CloudFilter::Verdict::outside)
         require(rows.empty());
     if (verdict == CloudFilter::Verdict::whole)
         require(rows.size() == positions.size());
     if (filter.hasCorridor())
-        filter.placesAlong(root, positions);
+        require(filter.placesAlong(root, positions).ok());
 }
 
 void checkAnswer(const Answer& answer) {

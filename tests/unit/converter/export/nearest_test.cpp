@@ -167,7 +167,8 @@ TEST_CASE("a search that is stopped ends, and damage is an error") {
     CloudFilter everything = need(CloudFilter::make(f.reader->metadata(), {}));
     std::atomic<bool> stop{true};
     DistanceRank rank(f.somewhere(100), false, infinity);
-    auto stopped = nearestPoints(*f.reader, "c", everything, rank, 1, &stop);
+    StopGate gate(&stop);
+    auto stopped = nearestPoints(*f.reader, "c", everything, rank, 1, &gate);
     REQUIRE_FALSE(stopped.ok());
     CHECK(stopped.error().code == ErrorCode::cancelled);
     Bytes bytes = f.file.cloud.file;
