@@ -259,6 +259,7 @@ void LoadQueue::settle(Request& request, Result<Bytes> bytes, Clock::time_point 
 void LoadQueue::fail(LoadItem item, const Error& error, Clock::time_point now, std::vector<Loaded>& loaded) {
     Failure& failure = failures_[item.key];
     ++failure.attempts;
+    failure.last = error;
     if (mayPass(error.code) && failure.attempts < maxAttempts) {
         failure.notBefore = now + pauseAfter(failure.attempts);
         waiting_.insert(waiting_.begin(), std::move(item));
@@ -271,6 +272,16 @@ void LoadQueue::fail(LoadItem item, const Error& error, Clock::time_point now, s
 bool LoadQueue::awaits(std::uint32_t cloud) const {
     return std::any_of(requests_.begin(), requests_.end(),
                        [&](const auto& request) { return request.second.cloud == cloud; });
+}
+
+std::optional<Error> LoadQueue::passingFailure() const {
+    for (const LoadItem& item : waiting_)
+        if (auto failure = failures_.find(item.key); failure != failures_.end())
+            return failure->second.last;
+    for (const auto& [key, request] : travelling_)
+        if (auto failure = failures_.find(key); failure != failures_.end())
+            return failure->second.last;
+    return std::nullopt;
 }
 
 LoadQueue::Clock::time_point LoadQueue::nextRetry() const {

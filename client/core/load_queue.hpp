@@ -13,6 +13,7 @@
 #include <compare>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace stipple {
@@ -75,6 +76,8 @@ class LoadQueue {
     bool awaits(std::uint32_t cloud) const; // a request to that source is on its way
     // The earliest time at which an item that waits after a failure may be asked for; max() if none does.
     Clock::time_point nextRetry() const;
+    // Why what waits for another attempt, or is on its way by one, failed before; nothing if nothing does.
+    std::optional<Error> passingFailure() const;
 
   private:
     struct Request;
@@ -85,6 +88,7 @@ class LoadQueue {
     struct Failure {
         int attempts = 0;
         Clock::time_point notBefore;
+        Error last;
     };
 
     bool mayStart(const LoadItem& item, Clock::time_point now) const;

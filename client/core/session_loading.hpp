@@ -13,6 +13,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,7 @@ class SessionLoading {
     bool anyOpening() const;
     // Nothing is wanted, on its way or waiting to be worked off.
     bool idle() const;
+    std::optional<Error> passingFailure() const { return queue_.passingFailure(); }
 
   private:
     int pumpAll(std::chrono::milliseconds wait);

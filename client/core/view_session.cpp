@@ -112,6 +112,7 @@ class Session final : public ViewSession {
     std::vector<Error> recentErrors() const override {
         return {loading_.errors().begin(), loading_.errors().end()};
     }
+    std::optional<Error> passingFailure() const override { return loading_.passingFailure(); }
 
   private:
     static bool shown(const CloudLoader& cloud) { return cloud.ready() && cloud.state.visible; }

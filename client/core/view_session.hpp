@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -80,6 +81,8 @@ class ViewSession {
     // may pass is tried LoadQueue::maxAttempts times, a block that does not decode twice. A node that failed
     // leaves the others as they are; a file that changed fails its cloud.
     virtual std::vector<Error> recentErrors() const = 0;
+    // Why something that is being tried again failed before; nothing if nothing is.
+    virtual std::optional<Error> passingFailure() const = 0;
 };
 
 } // namespace stipple

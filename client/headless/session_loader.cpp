@@ -32,7 +32,10 @@ Status SessionLoader::until(const std::function<bool()>& done) {
     return errors.empty() ? Status() : Status(errors.front());
 }
 
+// What keeps failing says more than that it took too long.
 Status SessionLoader::timeOut() const {
+    if (std::optional<Error> failure = session_.passingFailure())
+        return *failure;
     bool address = name_.find("://") != std::string::npos;
     return Error{address ? ErrorCode::networkFailed : ErrorCode::limitExceeded,
                  cat("not everything that the picture needs has arrived within ",

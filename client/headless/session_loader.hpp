@@ -19,8 +19,9 @@ class SessionLoader {
                   const std::atomic<bool>* stop = nullptr);
 
     // Updates the session until `done()`. Errors: of a cloud that failed, of single nodes (also once done: a
-    // picture with holes is no answer); networkFailed (addresses) or limitExceeded (files) when time runs
-    // out; cancelled once `stop`.
+    // picture with holes is no answer); when time runs out, what failed last
+    // and would be tried again, else networkFailed (addresses) or limitExceeded (files); cancelled once
+    // `stop`.
     Status until(const std::function<bool()>& done);
 
   private:

@@ -44,6 +44,23 @@ TEST_CASE("serve prints one line, logs each request, and ends with success on a 
     CHECK(text.find(R"("status":206,"bytes":100,)") != std::string::npos);
 }
 
+TEST_CASE("render names the connection that is refused, however little time it has") {
+    TestFolder folder;
+    fs::path errors = folder.path() / "errors.txt", picture = folder.path() / "a.png";
+    std::uint16_t port = 0;
+    {
+        TestServer gone;
+        port = gone.port();
+    }
+    std::string address = "http://127.0.0.1:" + std::to_string(port) + "/clouds/town.stipple";
+    Program program({"render", address, "-o", picture.string(), "--timeout", "0.2"}, errors);
+    CHECK(program.wait() != 0);
+    std::string text = readFile(errors);
+    CHECK(text.find("can't connect: Connection refused") != std::string::npos);
+    CHECK(text.find(address) != std::string::npos);
+    CHECK_FALSE(fs::exists(picture));
+}
+
 TEST_CASE("a second signal does not wait for the client that is still reading") {
     TestFolder folder;
     Program program(

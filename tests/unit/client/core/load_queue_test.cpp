@@ -138,6 +138,8 @@ TEST_CASE("a failure that may pass is tried four times with growing pauses, then
         CHECK(loading.script->reads.size() == static_cast<std::size_t>(attempt));
         auto pause = LoadQueue::pauseAfter(attempt);
         CHECK(loading.queue.nextRetry() == now + pause);
+        REQUIRE(loading.queue.passingFailure());
+        CHECK(loading.queue.passingFailure()->what == "down");
         CHECK(loading.go(now + pause - std::chrono::milliseconds(1)).empty());
         CHECK(loading.script->reads.size() == static_cast<std::size_t>(attempt));
         now += pause;
@@ -147,6 +149,23 @@ TEST_CASE("a failure that may pass is tried four times with growing pauses, then
     CHECK(loaded[0].bytes.error().code == ErrorCode::networkFailed);
     CHECK(loading.counters.requestsFailed == 4);
     CHECK(loading.queue.idle());
+    CHECK_FALSE(loading.queue.passingFailure());
+}
+
+TEST_CASE("while something is tried again it is known why, and no longer once it has come") {
+    Loading loading;
+    loading.script->failure = [](ByteRange) { return Error{ErrorCode::networkFailed, "down", "", ""}; };
+    loading.queue.want({item(1, {0, 50}), item(2, {5000, 50})});
+    CHECK(loading.go().empty());
+    loading.script->failure = nullptr;
+    loading.script->holdAnswers = true;
+    auto later = start + LoadQueue::pauseAfter(1);
+    CHECK(loading.go(later).empty());
+    REQUIRE(loading.queue.passingFailure()); // both are on their way
+    CHECK(loading.queue.passingFailure()->what == "down");
+    loading.script->holdAnswers = false;
+    CHECK(loading.go(later).size() == 2);
+    CHECK_FALSE(loading.queue.passingFailure());
 }
 
 TEST_CASE("a failure that can't pass is answered at once") {
