@@ -48,8 +48,9 @@ Result<std::string> parseOrigin(std::string_view text) {
     return isUsualPort ? cat(scheme, "://", host) : cat(scheme, "://", host, ":", port);
 }
 
-Result<CorsRules> CorsRules::listing(const std::vector<std::string>& origins) {
+Result<CorsRules> CorsRules::listing(const std::vector<std::string>& origins, PublicFor publicFor) {
     CorsRules rules;
+    rules.publicFor_ = publicFor;
     for (const std::string& text : origins) {
         if (text == "*") {
             rules.listsAll_ = true;
@@ -66,7 +67,7 @@ bool CorsRules::lists(std::string_view origin) const {
 }
 
 void CorsRules::complete(const HttpRequest& request, HttpResponse& response, bool isForAll) const {
-    if (isForAll || listsAll_) {
+    if (listsAll_ || (isForAll && isPublicForAll())) {
         response.set("Access-Control-Allow-Origin", "*");
     } else {
         response.addToList("Vary", "Origin");

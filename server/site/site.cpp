@@ -58,7 +58,8 @@ void Site::complete(const HttpRequest& request, HttpResponse& response) const {
     if (!forAll)
         response.set("Cache-Control", privateCaching(response.field("Cache-Control")));
     if (response.field("Cross-Origin-Resource-Policy").empty())
-        response.set("Cross-Origin-Resource-Policy", forAll ? "cross-origin" : "same-origin");
+        response.set("Cross-Origin-Resource-Policy",
+                     forAll && cors_.isPublicForAll() ? "cross-origin" : "same-origin");
     response.set("X-Content-Type-Options", "nosniff");
     if (request.method == "HEAD")
         response.sendsBody = false;

@@ -25,6 +25,13 @@ void raiseDescriptorLimit() {
     }
 }
 
+// Behind a proxy, others are served from a loopback address, too.
+bool isForThisMachine(const ServerOptions& options) {
+    const std::string& host = options.host;
+    bool isLoopback = host == "localhost" || host == "::1" || host.starts_with("127.");
+    return isLoopback && options.trustedProxies.empty();
+}
+
 void printAddress(const Server& server, const Site& site, bool asJson) {
     const std::vector<std::string> ids = site.catalog().ids();
     if (asJson) {
@@ -78,7 +85,7 @@ int serveUntilSignalled(const char* verb, const ServingOptions& options,
     auto page = openPageFolder(options.site.pageFolder);
     if (!page)
         return cli::fail(verb, page.error());
-    auto chosen = siteOptions(options.site);
+    auto chosen = siteOptions(options.site, isForThisMachine(options.server));
     if (!chosen)
         return cli::fail(verb, chosen.error());
     auto site =

@@ -67,8 +67,9 @@ void addSiteOptions(CLI::App& verb, ChosenSite& chosen) {
     verb.add_option("--access", chosen.accessFile,
                     "File that says which clouds are private and who may read them (see `stipple access`)");
     verb.add_option("--cors", chosen.origins,
-                    "Origin whose pages may read private clouds, such as https://maps.example; may be given "
-                    "several times; * for all. Public clouds are readable by every origin")
+                    "Origin whose pages may read all clouds, such as https://maps.example; may be given "
+                    "several times; * for all. Public clouds are readable by every origin, unless the server "
+                    "is for this machine alone (a loopback --host without --trust-proxy)")
         ->allow_extra_args(false)
         ->delimiter(',');
     CLI::Option* format = verb.add_option("--log", chosen.logFormat, "Log each request: combined, json")
@@ -78,13 +79,15 @@ void addSiteOptions(CLI::App& verb, ChosenSite& chosen) {
     addApiOptions(verb, chosen.api);
 }
 
-Result<SiteOptions> siteOptions(const ChosenSite& chosen) {
+Result<SiteOptions> siteOptions(const ChosenSite& chosen, bool isForThisMachine) {
     SiteOptions options;
     if (!chosen.accessFile.empty()) {
         STIPPLE_TRY(access, AccessControl::open(chosen.accessFile));
         options.access = std::move(access);
     }
-    STIPPLE_TRY(cors, CorsRules::listing(chosen.origins));
+    STIPPLE_TRY(cors,
+                CorsRules::listing(chosen.origins, isForThisMachine ? CorsRules::PublicFor::listedOrigins
+                                                                    : CorsRules::PublicFor::everyOrigin));
     options.cors = std::move(cors);
     options.api = chosen.api;
     return options;

@@ -22,8 +22,9 @@ struct ChosenSite {
 
 void addSiteOptions(CLI::App& verb, ChosenSite& chosen);
 
-// Errors: those of the access file; invalidArgument for an origin that is none.
-Result<SiteOptions> siteOptions(const ChosenSite& chosen);
+// `isForThisMachine`: other clients don't reach the server. Errors: those of the access file; invalidArgument
+// for an origin that is none.
+Result<SiteOptions> siteOptions(const ChosenSite& chosen, bool isForThisMachine);
 
 // Null if none was asked for. Errors: writeFailed.
 Result<std::unique_ptr<AccessLog>> openLog(const ChosenSite& chosen);

@@ -44,6 +44,26 @@ TEST_CASE("serve prints one line, logs each request, and ends with success on a 
     CHECK(text.find(R"("status":206,"bytes":100,)") != std::string::npos);
 }
 
+TEST_CASE("a server for this machine alone is read by the pages of no other origin, unless they are listed") {
+    TestFolder folder;
+    auto allowed = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), {"serve", folder.cloud().string(), "--port", "0", "--json", "--page",
+                                         folder.page().string()});
+        Program program(options, folder.path() / "errors.txt");
+        auto answer =
+            askOnce(portOf(program.line()),
+                    "GET /clouds/town.stipple HTTP/1.1\nHost: a\nRange: bytes=0-9\nOrigin: https://a");
+        CHECK(answer.status == 206);
+        return answer.field("access-control-allow-origin") + ", " +
+               answer.field("cross-origin-resource-policy");
+    };
+    CHECK(allowed({}) == ", same-origin");
+    CHECK(allowed({"--cors", "https://a"}) == "https://a, same-origin");
+    CHECK(allowed({"--cors", "*"}) == "*, cross-origin");
+    CHECK(allowed({"--trust-proxy", "127.0.0.1"}) == "*, cross-origin");
+    CHECK(allowed({"--host", "0.0.0.0"}) == "*, cross-origin");
+}
+
 TEST_CASE("render names the connection that is refused, however little time it has") {
     TestFolder folder;
     fs::path errors = folder.path() / "errors.txt", picture = folder.path() / "a.png";

@@ -77,6 +77,21 @@ TEST_CASE("what is for everybody is for every origin, and does not vary") {
         }
 }
 
+TEST_CASE("what is for everybody on this machine is for the listed origins alone") {
+    auto rules = CorsRules::listing({"https://a"}, CorsRules::PublicFor::listedOrigins);
+    REQUIRE(rules.ok());
+    CHECK_FALSE(rules->isPublicForAll());
+    for (bool isForAll : {true, false}) {
+        CHECK(completed(*rules, "https://a", isForAll).field("Access-Control-Allow-Origin") == "https://a");
+        CHECK(completed(*rules, "https://b", isForAll).field("Access-Control-Allow-Origin").empty());
+        CHECK(completed(*rules, "https://b", isForAll).field("Vary") == "Origin");
+    }
+    auto all = CorsRules::listing({"*"}, CorsRules::PublicFor::listedOrigins);
+    REQUIRE(all.ok());
+    CHECK(all->isPublicForAll());
+    CHECK(completed(*all, "https://b", true).field("Access-Control-Allow-Origin") == "*");
+}
+
 TEST_CASE("what needs credentials is for the listed origins alone") {
     CorsRules rules = listing({"https://a", "http://localhost:8080"});
     for (const char* from : {"https://a", "http://localhost:8080"}) {
