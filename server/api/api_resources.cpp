@@ -17,7 +17,7 @@ std::string folderOf(const ApiLimits& limits) {
 } // namespace
 
 ApiResources::ApiResources(const ApiLimits& chosen)
-    : limits(chosen), hierarchy(chosen.hierarchyCacheBytes),
+    : limits(chosen), hierarchy(chosen.hierarchyCacheBytes), statistics(chosen.statisticsBytes),
       scratch(std::make_shared<ScratchSpace>(folderOf(chosen), chosen.scratchBytes)),
       pictureRate(std::make_shared<ClientRate>(chosen.picturesPerMinute)),
       pictures_(std::make_unique<PictureService>()) {}

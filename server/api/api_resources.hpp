@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/api/hierarchy_cache.hpp"
+#include "server/cache/shared_cache.hpp"
 #include "server/files/scratch_space.hpp"
 #include "server/http/client_rate.hpp"
 
@@ -23,6 +24,7 @@ struct PointLimits {
 
 struct ApiLimits {
     std::uint64_t hierarchyCacheBytes = 256ull << 20;
+    std::uint64_t statisticsBytes = 16ull << 20; // of answers that are kept; one has a few thousand
     PointLimits points = {};
     std::string scratchFolder = {};           // for answers made as files (LAZ); empty: the system's
     std::uint64_t scratchBytes = 16ull << 30; // of all of them at once
@@ -36,6 +38,7 @@ class ApiResources {
 
     const ApiLimits limits;
     HierarchyCache hierarchy;
+    SharedCache<std::string, std::string> statistics; // documents, by keptKeyOf()
     const std::shared_ptr<ScratchSpace> scratch;
     PictureService& pictures() const { return *pictures_; }
     const std::shared_ptr<ClientRate> pictureRate;

@@ -29,18 +29,19 @@ Answer answerImage(const ApiCall& call) {
         return *refusal;
     auto [format, variesByAccept] = std::get<ChosenFormat>(chosen);
 
-    Validity validity =
-        validityOf(call, cat("image ", format->name, " ", canonicalText(*request)), variesByAccept);
+    std::string variant = cat("image ", format->name, " ", canonicalText(*request));
+    Validity validity = validityOf(call, variant, variesByAccept);
     if (validity.conditional)
         return *validity.conditional;
     PictureService& pictures = call.resources.pictures();
-    if (auto picture = pictures.kept(validity.validators.etag))
+    std::string key = keptKeyOf(call, variant);
+    if (auto picture = pictures.kept(key))
         return pictureResponse(*format, validity, *picture);
     return Job{"image",
-               [cloud = call.cloud, request = *request, format = format, validity,
+               [cloud = call.cloud, request = *request, format = format, validity, key,
                 &pictures](AnswerWriter& writer) -> Status {
-                   STIPPLE_TRY(picture, pictures.picture(validity.validators.etag, cloud, request,
-                                                         format->name, writer.isStopped()));
+                   STIPPLE_TRY(picture,
+                               pictures.picture(key, cloud, request, format->name, writer.isStopped()));
                    writer.answer(pictureResponse(*format, validity, *picture));
                    return {};
                },

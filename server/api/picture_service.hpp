@@ -25,8 +25,8 @@ class PictureService {
     explicit PictureService(const PictureLimits& limits = {})
         : limits_(limits), pictures_(limits.pictureBytes) {}
 
-    // The coded picture, drawn unless it is kept. `key` names cloud, version, request and format (an entity
-    // tag). Of several threads that want the same picture one draws it. Errors: those of drawPicture.
+    // The coded picture, drawn unless it is kept. `key` names version, request and format (keptKeyOf()). Of
+    // several threads that want the same picture one draws it. Errors: those of drawPicture.
     Result<std::shared_ptr<const std::string>>
     picture(const std::string& key, const std::shared_ptr<const CloudVersion>& cloud,
             headless::PictureRequest request, std::string_view format, const std::atomic<bool>& stop);

@@ -22,6 +22,7 @@ struct StatisticsJob {
     std::size_t bins;
     PointLimits limits;
     Validity validity;
+    std::string key; // by which the answer is kept
 
     const CloudMetadata& metadata() const { return cloud->metadata; }
 };
@@ -133,23 +134,38 @@ Result<StatisticsAnswer> computed(const StatisticsJob& job, CloudReader& reader,
     return answer;
 }
 
-Status answerJob(const StatisticsJob& job, AnswerWriter& writer) {
+Result<std::string> documentOf(const StatisticsJob& job, const WorkGate& gate) {
     auto source = job.cloud->openSource();
     auto reader = CloudReader::over(*source, job.cloud->header, job.metadata());
     WalkOptions walk;
     walk.threads = job.limits.threads;
-    StopGate gate(&writer.isStopped());
     walk.gate = &gate;
     auto answer = isToldByFile(job) ? toldByFile(job, *reader, walk) : computed(job, *reader, walk);
     if (!answer)
         return answer.error();
     nlohmann::ordered_json json = statisticsJson(*answer, job.metadata());
+    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+HttpResponse responseOf(const StatisticsJob& job, const std::string& document) {
     HttpResponse response;
     response.set("Content-Type", std::string(jsonFormat.mediaType));
     job.validity.setFields(response);
-    response.body.push_back(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) +
-                            "\n");
-    writer.answer(std::move(response));
+    response.body.push_back(document);
+    return response;
+}
+
+// Made once, however many ask for it at a time, and kept.
+Status answerJob(const StatisticsJob& job, ApiResources& resources, AnswerWriter& writer) {
+    using Made = SharedCache<std::string, std::string>::Made;
+    StopGate gate(&writer.isStopped());
+    auto make = [&]() -> Result<Made> {
+        STIPPLE_TRY(document, documentOf(job, gate));
+        std::uint64_t bytes = document.size() + job.key.size();
+        return Made{std::make_shared<const std::string>(std::move(document)), bytes};
+    };
+    STIPPLE_TRY(document, resources.statistics.get(job.key, make, writer.isStopped()));
+    writer.answer(responseOf(job, *document));
     return {};
 }
 
@@ -159,14 +175,16 @@ Result<StatisticsJob> jobOf(const ApiCall& call) {
     auto filter = CloudFilter::make(call.cloud->metadata, request.filter);
     if (!filter)
         return parameterError("", filter.error().what, filter.error().advice);
-    return StatisticsJob{
-        call.id,
-        call.cloud,
-        *std::move(filter),
-        std::move(request.attributes),
-        static_cast<std::size_t>(bins.value_or(0)),
-        call.resources.limits.points,
-        validityOf(call, cat("statistics\n", canonicalQuery(call.query, statisticsParameters)))};
+    std::string variant = cat("statistics\n", canonicalQuery(call.query, statisticsParameters));
+    return StatisticsJob{call.id,
+                         call.cloud,
+                         *std::move(filter),
+                         std::move(request.attributes),
+                         static_cast<std::size_t>(bins.value_or(0)),
+                         call.resources.limits.points,
+                         validityOf(call, variant),
+                         keptKeyOf(call, // the id is part of the answer
+                                   cat(call.id, "\n", variant))};
 }
 
 } // namespace
@@ -177,8 +195,12 @@ Answer answerStatistics(const ApiCall& call) {
         return requestProblem(job.error());
     if (job->validity.conditional)
         return *std::move(job->validity.conditional);
+    ApiResources& resources = call.resources;
+    if (auto document = resources.statistics.find(job->key))
+        return responseOf(*job, *document);
     auto owned = std::make_shared<const StatisticsJob>(*std::move(job));
-    return Job{"statistics", [owned](AnswerWriter& writer) { return answerJob(*owned, writer); }};
+    return Job{"statistics",
+               [owned, &resources](AnswerWriter& writer) { return answerJob(*owned, resources, writer); }};
 }
 
 } // namespace stipple::server

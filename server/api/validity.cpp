@@ -42,6 +42,10 @@ Validity validityOf(const ApiCall& call, std::string_view variant, bool variesBy
     return validity;
 }
 
+std::string keptKeyOf(const ApiCall& call, std::string_view variant) {
+    return cat(call.cloud->version(), "\n", variant);
+}
+
 std::optional<HttpResponse> goneVersion(const ApiCall& call) {
     const std::string* wanted = call.query.find(versionParameter.name);
     if (!wanted || *wanted == call.cloud->version())

@@ -35,6 +35,10 @@ struct Validity {
 // `variant`: what the answer depends on besides the cloud's version, in one canonical form.
 Validity validityOf(const ApiCall& call, std::string_view variant, bool variesByAccept = false);
 
+// By what an answer is kept here: all that it depends on, not the tag made of it, since two variants that
+// have one tag can be found by who looks for them.
+std::string keptKeyOf(const ApiCall& call, std::string_view variant);
+
 // 410 if the request names another version than the cloud now has; nothing: go on.
 std::optional<HttpResponse> goneVersion(const ApiCall& call);
 

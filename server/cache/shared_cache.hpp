@@ -42,7 +42,9 @@ class SharedCache {
     // Null if it is not there; doesn't wait.
     ValuePtr find(const Key& key) {
         std::lock_guard lock(mutex_);
-        return findLocked(key);
+        ValuePtr value = findLocked(key);
+        counts_.hits += value != nullptr;
+        return value;
     }
 
     // The value, made by `make` (without any lock held) if it is not there. Errors are not kept: whoever

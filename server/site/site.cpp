@@ -209,8 +209,11 @@ std::vector<Measurement> Site::measurements() const {
     };
     addCache("hierarchy", resources_->hierarchy.counts());
     addCache("pictures", resources_->pictures().counts());
+    addCache("statistics", resources_->statistics.counts());
     if (const Upstream* upstream = catalog_->upstream()) {
         addCache("upstream", upstream->blocks.counts());
+        if (upstream->disk)
+            addCache("upstream-disk", upstream->disk->counts());
         for (Measurement& more : upstream->measurements())
             all.push_back(std::move(more));
     }

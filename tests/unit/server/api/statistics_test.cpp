@@ -268,6 +268,34 @@ TEST_CASE("statistics do not depend on threads, and are bounded") {
     CHECK(bounded.ask("/api/v1/clouds/c/statistics?attributes=Intensity").status == 200); // reads none
 }
 
+TEST_CASE("statistics are computed once for each query and version, and kept within a bound") {
+    Scan scan;
+    ApiFixture api(scan.folder.file("c.stipple"));
+    const std::string target = "/api/v1/clouds/c/statistics?bins=50&box=500000,4000000,500500,4000300";
+    auto counts = [&] { return api.resources().statistics.counts(); };
+    ApiAnswer first = api.ask(target), second = api.ask(target);
+    CHECK(first.body == second.body);
+    CHECK(first.field("ETag") == second.field("ETag"));
+    CHECK(counts().misses == 1);
+    CHECK(counts().hits == 1);
+    // In another order and with what is usual: the same answer.
+    CHECK(api.ask("/api/v1/clouds/c/statistics?box=500000,4000000,500500,4000300&bins=50").body ==
+          first.body);
+    CHECK(counts().misses == 1);
+    CHECK(api.ask("/api/v1/clouds/c/statistics?bins=51&box=500000,4000000,500500,4000300").body !=
+          first.body);
+    CHECK(counts().misses == 2);
+
+    ApiLimits limits;
+    limits.statisticsBytes = 2 * first.body.size();
+    ApiFixture small(scan.folder.file("c.stipple"), limits);
+    for (int bins = 20; bins < 60; ++bins) {
+        CHECK(small.ask("/api/v1/clouds/c/statistics?bins=" + std::to_string(bins)).status == 200);
+        CHECK(small.resources().statistics.counts().bytes <= limits.statisticsBytes);
+    }
+    CHECK(small.resources().statistics.counts().evicted > 30);
+}
+
 TEST_CASE("statistics of regions of autzen are those of the scan", "[slow]") {
     STIPPLE_NEEDS_DATA();
     const std::string scan = dataPath("clouds/autzen.laz");
