@@ -8,4 +8,4 @@ command -v nginx >/dev/null || { echo "skipped: there is no nginx (apt-get insta
 . scripts/environment.sh
 configure_and_build release test_http
 nginx -v
-cd build && release/tests/http/test_http "[.nginx]"
+build/release/tests/http/test_http "[.nginx]"

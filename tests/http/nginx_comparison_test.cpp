@@ -1,5 +1,6 @@
 // The golden cases, put to nginx on the same files: where its answers differ must be written down, with the
-// reason, in nginx_differences.txt. Run by compare_with_nginx.sh, where nginx is.
+// reason, in nginx_differences.txt; what was found goes to nginx_differences.found in the build folder. Run
+// by compare_with_nginx.sh, where nginx is.
 #include "tests/http/support/golden_case.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
@@ -176,6 +177,6 @@ TEST_CASE("nginx answers the golden cases as this server does, but for known dif
             compareCase(name, parsePlayed(playGoldenCase(text, server.port(), namesOf(server.port()), true)),
                         parsePlayed(playGoldenCase(text, port, namesOf(port), true)));
     }
-    std::ofstream("nginx_differences.found") << found; // in the folder that the test runs in
+    std::ofstream(fs::path(STIPPLE_TEST_OUTPUT) / "nginx_differences.found") << found;
     CHECK(found == knownDifferences());
 }
