@@ -1,5 +1,6 @@
 #include "client/headless/http_source.hpp"
 
+#include "client/headless/http_redirect.hpp"
 #include "client/headless/http_url.hpp"
 #include "client/headless/tls_trust.hpp"
 #include "shared/base/text.hpp"
@@ -53,13 +54,32 @@ using JobPtr = std::shared_ptr<Job>;
 using TlsStream = net::ssl::stream<beast::tcp_stream&>; // borrows the stream below it
 
 struct Connection {
-    explicit Connection(net::io_context& context) : stream(context), wake(context) {}
+    Connection(net::io_context& context, std::string to) : stream(context), origin(std::move(to)) {}
     beast::tcp_stream stream;
+    const std::string origin;
+    Tcp::resolver::results_type endpoints;
     std::optional<TlsStream> tls; // https: one for each time it is opened
     beast::flat_buffer buffer{readBufferBytes};
-    net::steady_timer wake; // expires never; cancelled to wake an idle connection
     bool isOpen = false;
+};
+
+// Takes jobs from the queue, one after the other; its connections lead to where the address does, and to
+// where that redirects.
+struct Worker {
+    explicit Worker(net::io_context& context) : wake(context) {}
+    Connection& connectionTo(net::io_context& context, const std::string& origin) {
+        for (auto& connection : connections)
+            if (connection->origin == origin)
+                return *connection;
+        constexpr std::size_t kept = 3;
+        if (connections.size() == kept)
+            connections.erase(connections.begin() + 1);
+        connections.push_back(std::make_unique<Connection>(context, origin));
+        return *connections.back();
+    }
+    net::steady_timer wake; // expires never; cancelled to wake an idle worker
     bool isIdle = false;
+    std::vector<std::unique_ptr<Connection>> connections; // not in use while another one is
 };
 
 // How an attempt ended; `stale`: a kept-alive connection was closed before a byte of the answer came, so the
@@ -67,6 +87,8 @@ struct Connection {
 struct Attempt {
     Result<Bytes> result = Bytes();
     bool stale = false;
+    unsigned redirect = 0; // the status of one, with its Location
+    std::string location = {};
 };
 
 std::string field(const http::fields& fields, http::field name) {
@@ -136,15 +158,15 @@ class HttpSource final : public ByteSource {
 
     void enqueue(JobPtr job) {
         queue_.push_back(std::move(job));
-        for (auto& connection : connections_)
-            if (connection->isIdle) {
-                connection->isIdle = false;
-                connection->wake.cancel();
+        for (auto& worker : workers_)
+            if (worker->isIdle) {
+                worker->isIdle = false;
+                worker->wake.cancel();
                 return;
             }
-        if (static_cast<int>(connections_.size()) < std::max(options_.connections, 1)) {
-            connections_.push_back(std::make_unique<Connection>(context_));
-            net::co_spawn(context_, serveQueue(*connections_.back()), net::detached);
+        if (static_cast<int>(workers_.size()) < std::max(options_.connections, 1)) {
+            workers_.push_back(std::make_unique<Worker>(context_));
+            net::co_spawn(context_, serveQueue(*workers_.back()), net::detached);
         }
     }
 
@@ -160,30 +182,60 @@ class HttpSource final : public ByteSource {
         return delivered;
     }
 
-    net::awaitable<void> serveQueue(Connection& connection) {
+    net::awaitable<void> serveQueue(Worker& worker) {
         for (;;) {
             while (queue_.empty()) {
-                connection.isIdle = true;
-                connection.wake.expires_at(Clock::time_point::max());
-                co_await connection.wake.async_wait(answered);
-                connection.isIdle = false;
+                worker.isIdle = true;
+                worker.wake.expires_at(Clock::time_point::max());
+                co_await worker.wake.async_wait(answered);
+                worker.isIdle = false;
             }
             JobPtr job = queue_.front();
             queue_.pop_front();
             active_.push_back(job);
-            bool reused = connection.isOpen;
-            Attempt attempt = co_await fetch(connection, *job);
-            if (attempt.stale && reused && !job->cancelled)
-                attempt = co_await fetch(connection, *job);
+            Attempt attempt = co_await follow(worker, *job);
             active_.erase(std::find(active_.begin(), active_.end(), job));
             if (!job->cancelled)
                 ready_.emplace_back(std::move(job->done), std::move(attempt.result));
         }
     }
 
-    net::awaitable<Attempt> fetch(Connection& connection, const Job& job) {
+    // From the address to where it redirects, if it does. What is said to be moved for good is asked for
+    // there at once from then on; what is elsewhere for now may be somewhere else the next time (RFC 9110
+    // §15.4).
+    net::awaitable<Attempt> follow(Worker& worker, const Job& job) {
+        HttpUrl at = url_;
+        bool isMoved = true;
+        for (int hops = 0;; ++hops) {
+            Connection& connection = worker.connectionTo(context_, originOf(at));
+            bool reused = connection.isOpen;
+            Attempt attempt = co_await fetch(connection, at, job);
+            if (attempt.stale && reused && !job.cancelled)
+                attempt = co_await fetch(connection, at, job);
+            if (attempt.redirect == 0)
+                co_return attempt;
+            if (hops == maxRedirects)
+                co_return Attempt{
+                    networkError(cat("the server redirects more than ", maxRedirects, " times"))};
+            auto next = redirectTarget(at, attempt.location, name_);
+            if (!next)
+                co_return Attempt{next.error()};
+            if (next->isSecure && !options_.trust) {
+                auto trust = TlsTrust::load();
+                if (!trust)
+                    co_return Attempt{trust.error()};
+                options_.trust = *trust;
+            }
+            at = *next;
+            isMoved = isMoved && isPermanentRedirect(attempt.redirect);
+            if (isMoved)
+                url_ = at;
+        }
+    }
+
+    net::awaitable<Attempt> fetch(Connection& connection, const HttpUrl& url, const Job& job) {
         if (!connection.isOpen) {
-            Status connected = co_await connect(connection);
+            Status connected = co_await connect(connection, url);
             if (!connected)
                 co_return Attempt{connected.error()};
         }
@@ -191,36 +243,36 @@ class HttpSource final : public ByteSource {
         connection.isOpen = false;
         Attempt attempt;
         if (connection.tls)
-            attempt = co_await exchange(connection, *connection.tls, job);
+            attempt = co_await exchange(connection, *connection.tls, url, job);
         else
-            attempt = co_await exchange(connection, connection.stream, job);
+            attempt = co_await exchange(connection, connection.stream, url, job);
         if (!connection.isOpen)
             closeNow(connection);
         co_return attempt;
     }
 
-    net::awaitable<Status> connect(Connection& connection) {
+    net::awaitable<Status> connect(Connection& connection, const HttpUrl& url) {
         closeNow(connection);
-        if (endpoints_.empty()) {
+        if (connection.endpoints.empty()) {
             Tcp::resolver resolver(context_);
-            auto [error, found] = co_await resolver.async_resolve(url_.host, url_.port, answered);
+            auto [error, found] = co_await resolver.async_resolve(url.host, url.port, answered);
             if (error)
                 co_return networkError(cat("the host can't be found: ", error.message()));
-            endpoints_ = found;
+            connection.endpoints = found;
         }
         connection.stream.expires_after(options_.connectTimeout);
-        auto [error, endpoint] = co_await connection.stream.async_connect(endpoints_, answered);
+        auto [error, endpoint] = co_await connection.stream.async_connect(connection.endpoints, answered);
         if (error == beast::error::timeout)
             co_return timeoutError();
         if (error) {
-            endpoints_ = {}; // the name may lead elsewhere by now
+            connection.endpoints = {}; // the name may lead elsewhere by now
             co_return networkError(cat("can't connect: ", error.message()),
                                    "check the address, and that the server runs");
         }
         Failure ignored;
         connection.stream.socket().set_option(Tcp::no_delay(true), ignored);
-        if (url_.isSecure) {
-            Status agreed = co_await shakeHands(connection);
+        if (url.isSecure) {
+            Status agreed = co_await shakeHands(connection, url);
             if (!agreed)
                 co_return agreed;
         }
@@ -229,13 +281,13 @@ class HttpSource final : public ByteSource {
     }
 
     // Within connectTimeout, too.
-    net::awaitable<Status> shakeHands(Connection& connection) {
+    net::awaitable<Status> shakeHands(Connection& connection, const HttpUrl& url) {
         connection.tls.emplace(connection.stream, options_.trust->context());
         Failure notAnAddress, problem;
-        net::ip::make_address(url_.host, notAnAddress);
+        net::ip::make_address(url.host, notAnAddress);
         if (notAnAddress) // SNI is for names (RFC 6066 §3)
-            SSL_set_tlsext_host_name(connection.tls->native_handle(), url_.host.c_str());
-        connection.tls->set_verify_callback(net::ssl::host_name_verification(url_.host), problem);
+            SSL_set_tlsext_host_name(connection.tls->native_handle(), url.host.c_str());
+        connection.tls->set_verify_callback(net::ssl::host_name_verification(url.host), problem);
         if (problem)
             co_return networkError(cat("TLS can't be set up: ", problem.message()));
         auto [error] = co_await connection.tls->async_handshake(net::ssl::stream_base::client, answered);
@@ -254,8 +306,9 @@ class HttpSource final : public ByteSource {
 
     // Sends the request and reads its answer; sets `isOpen` if the connection can be used again.
     template <class ByteStream>
-    net::awaitable<Attempt> exchange(Connection& connection, ByteStream& stream, const Job& job) {
-        http::request<http::empty_body> request = makeRequest(job.range);
+    net::awaitable<Attempt> exchange(Connection& connection, ByteStream& stream, const HttpUrl& url,
+                                     const Job& job) {
+        http::request<http::empty_body> request = makeRequest(url, job.range);
         connection.stream.expires_after(options_.headerTimeout);
         if (auto [error, sent] = co_await http::async_write(stream, request, answered); error)
             co_return Attempt{readError(error), error != beast::error::timeout};
@@ -272,6 +325,13 @@ class HttpSource final : public ByteSource {
                 co_return Attempt{networkError("the header of the answer has no end")};
         }
 
+        if (isRedirect(parser.get().result_int())) {
+            Attempt moved;
+            moved.redirect = parser.get().result_int();
+            moved.location = field(parser.get(), http::field::location);
+            co_await passOver(connection, stream, parser);
+            co_return moved;
+        }
         bool wasPinned = version_.pinned;
         auto expected = judgeRangeAnswer(job.range, summary(parser), version_, name_);
         if (!expected)
@@ -305,9 +365,27 @@ class HttpSource final : public ByteSource {
         co_return Attempt{std::move(body)};
     }
 
-    http::request<http::empty_body> makeRequest(ByteRange range) const {
-        http::request<http::empty_body> request{http::verb::get, url_.target, 11};
-        request.set(http::field::host, url_.authority);
+    // The body of an answer that is not needed: read if it is short, so that the connection can be used
+    // again.
+    template <class ByteStream, class Parser>
+    net::awaitable<void> passOver(Connection& connection, ByteStream& stream, Parser& parser) {
+        parser.body_limit(drainBytes);
+        if (auto length = parser.content_length(); length && *length > drainBytes)
+            co_return;
+        while (!parser.is_done()) {
+            connection.stream.expires_after(options_.noProgressTimeout);
+            auto [error, got] = co_await http::async_read_some(stream, connection.buffer, parser, answered);
+            if (error)
+                co_return;
+        }
+        connection.isOpen = parser.keep_alive();
+    }
+
+    http::request<http::empty_body> makeRequest(const HttpUrl& url, ByteRange range) const {
+        http::request<http::empty_body> request{http::verb::get, url.target, 11};
+        request.set(http::field::host, url.authority);
+        if (std::string token = options_.tokenFor ? options_.tokenFor(originOf(url)) : ""; !token.empty())
+            request.set(http::field::authorization, cat("Bearer ", token));
         request.set(http::field::user_agent, "stipple");
         request.set(http::field::accept_encoding, "identity");
         request.set(http::field::range, rangeField(range));
@@ -356,9 +434,8 @@ class HttpSource final : public ByteSource {
     HttpUrl url_;
     std::string name_;
     HttpSourceOptions options_;
-    Tcp::resolver::results_type endpoints_;
     FileVersion version_;
-    std::vector<std::unique_ptr<Connection>> connections_;
+    std::vector<std::unique_ptr<Worker>> workers_;
     std::deque<JobPtr> queue_, active_;
     std::deque<std::pair<Completion, Result<Bytes>>> ready_;
     RequestId nextId_ = 0;

@@ -8,6 +8,7 @@
 // * No waiter hangs: connecting, the header of an answer and each further piece of a body have time limits
 //   (isTimeout()).
 // * https: the server's certificate must rest on one that is trusted and name the host; else `networkFailed`.
+// * Redirects are followed, maxRedirects in a row; each origin gets the token that is meant for it, if any.
 //
 // Thread: as ByteSource; all network work happens inside pump(), nothing runs in between. Memory: the
 // ranges asked for, plus 16 KiB a connection.
@@ -33,6 +34,9 @@ struct HttpSourceOptions {
     std::chrono::milliseconds noProgressTimeout{30'000}; // between two pieces of a body
     std::shared_ptr<TlsTrust> trust = {};                // for https; null: the system's
     FileVersion version = {};                            // to insist on from the start; unpinned: any
+    // The token to send to an origin (originOf(), http_redirect.hpp) as Authorization: Bearer (RFC 6750);
+    // empty, or null: none.
+    std::function<std::string(const std::string& origin)> tokenFor = {};
     // Called once, by pump(), when the first answer has pinned a version.
     std::function<void(const FileVersion&)> onVersion = {};
 };
