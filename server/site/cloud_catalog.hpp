@@ -74,7 +74,7 @@ class CloudCatalog {
     bool mustBePrepared(const std::string& id) const;
     void prepare(const std::string& id, const std::atomic<bool>& stop) const;
     bool isElsewhere(const std::string& id) const;
-    const Upstream* upstream() const { return upstream_.get(); } // null: no cloud is at another server
+    Upstream* upstream() const { return upstream_.get(); } // null: no cloud is at another server
 
     // Kept for every cloud that was open once, so lists do not open it again; waits for other servers.
     // Errors: as current().

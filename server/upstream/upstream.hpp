@@ -1,15 +1,18 @@
-// What all clouds from elsewhere share: options, the cache of blocks, whom https believes, and counts. Lives
-// as long as the server. Thread: any.
+// What all clouds from elsewhere share: options, the caches of blocks, whom https believes, tokens, and
+// counts. Lives as long as the server. Thread: any.
 #pragma once
 
 #include "server/http/measurement.hpp"
 #include "server/upstream/block_cache.hpp"
+#include "server/upstream/disk_blocks.hpp"
+#include "server/upstream/upstream_tokens.hpp"
 #include "shared/base/result.hpp"
 
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -26,7 +29,10 @@ struct UpstreamOptions {
     std::chrono::milliseconds retryPause{2'000};     // from a failed look at an upstream to the next
     std::chrono::milliseconds connectTimeout{5'000}; // with the handshake of TLS
     std::chrono::milliseconds answerTimeout{15'000}; // of an answer's header, and of each piece of a body
-    std::string caPath; // PEM of the certificates to believe; empty: the system's
+    std::string caPath;     // PEM of the certificates to believe; empty: the system's
+    std::string tokenPath;  // of UpstreamTokens; empty: none
+    std::string diskFolder; // of DiskBlocks; empty: nothing is kept on disk
+    std::uint64_t diskBytes = 16ull << 30;
 };
 
 struct UpstreamCounts {
@@ -37,21 +43,30 @@ struct UpstreamCounts {
 
 class Upstream {
   public:
-    // Errors: those of TlsTrust::load.
+    // Errors: those of TlsTrust::load, UpstreamTokens::load and DiskBlocks::open.
     static Result<std::shared_ptr<Upstream>> open(const UpstreamOptions& options);
 
     const UpstreamOptions options;
     const std::shared_ptr<TlsTrust> trust;
     BlockCache blocks;
+    const std::unique_ptr<DiskBlocks> disk; // null: none
     UpstreamCounts counts;
+
+    // For an origin as originOf() writes it; empty: none.
+    std::string tokenFor(const std::string& origin) const;
+    // Reads the file of tokens again; where that fails, the old ones stay in use.
+    Status reloadTokens();
 
     std::uint64_t nextFileNumber() { return ++fileNumbers_; } // of BlockCache::File
     std::vector<Measurement> measurements() const;
 
   private:
-    Upstream(const UpstreamOptions& chosen, std::shared_ptr<TlsTrust> trusted)
-        : options(chosen), trust(std::move(trusted)), blocks(chosen.cacheBytes) {}
+    Upstream(const UpstreamOptions& chosen, std::shared_ptr<TlsTrust> trusted,
+             std::unique_ptr<DiskBlocks> kept)
+        : options(chosen), trust(std::move(trusted)), blocks(chosen.cacheBytes), disk(std::move(kept)) {}
     std::atomic<std::uint64_t> fileNumbers_{0};
+    mutable std::mutex tokensMutex_;
+    UpstreamTokens tokens_;
 };
 
 } // namespace stipple::server

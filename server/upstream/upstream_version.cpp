@@ -22,6 +22,7 @@ HttpSourceOptions sourceOptions(const Upstream& upstream) {
     options.connectTimeout = upstream.options.connectTimeout;
     options.headerTimeout = options.noProgressTimeout = upstream.options.answerTimeout;
     options.trust = upstream.trust;
+    options.tokenFor = [&upstream](const std::string& origin) { return upstream.tokenFor(origin); };
     return options;
 }
 
@@ -121,7 +122,53 @@ Result<std::vector<Block>> UpstreamVersion::blocks(BlockCache::Run run, const st
     if (isGone_) // also of what is held: who began with the old version must not end with it unawares
         return Error{ErrorCode::changed, "the file was replaced at the server that it comes from", "", ""};
     return upstream_->blocks.get(
-        file_, run, [this, &stop](ByteRange range) { return fetch(range, stop); }, stop);
+        file_, run, [this, &stop](ByteRange range) { return fetchBlocks(range, stop); }, stop);
+}
+
+// Only a strong tag tells for certain, also after a restart, that bytes are of this version.
+std::string UpstreamVersion::diskKey(std::uint64_t index) const {
+    return cat(url_, "\n", version_.etag, "\n", version_.sizeBytes, "\n", index);
+}
+
+// A run of whole blocks: those that are on disk from there, the others, neighbours in one request, from the
+// upstream.
+Result<Bytes> UpstreamVersion::fetchBlocks(ByteRange range, const std::atomic<bool>& stop) {
+    DiskBlocks* disk = upstream_->disk.get();
+    if (disk == nullptr || !version_.etag.starts_with('"'))
+        return fetch(range, stop);
+    auto run = BlockCache::blocksOf(range);
+    auto partOf = [&](std::uint64_t first, std::uint64_t count) -> ByteRange {
+        std::uint64_t begin = first * BlockCache::blockBytes;
+        return {begin, std::min(count * BlockCache::blockBytes, range.end() - begin)};
+    };
+    std::vector<std::optional<Bytes>> held;
+    for (std::uint64_t i = 0; i < run.count; ++i) {
+        held.push_back(disk->find(diskKey(run.first + i)));
+        if (held.back() && held.back()->size() != partOf(run.first + i, 1).size)
+            held.back().reset();
+    }
+    Bytes all;
+    for (std::uint64_t i = 0; i < run.count;) {
+        if (held[i]) {
+            all.insert(all.end(), held[i]->begin(), held[i]->end());
+            ++i;
+            continue;
+        }
+        std::uint64_t count = 1;
+        while (i + count < run.count && !held[i + count])
+            ++count;
+        STIPPLE_TRY(bytes, fetch(partOf(run.first + i, count), stop));
+        for (std::uint64_t k = 0; k < count; ++k) {
+            ByteRange part = partOf(run.first + i + k, 1);
+            std::size_t at = static_cast<std::size_t>(k * BlockCache::blockBytes);
+            if (at + part.size <= bytes.size()) // else the caller refuses the run
+                disk->keep(diskKey(run.first + i + k),
+                           ByteSpan(bytes).subspan(at, static_cast<std::size_t>(part.size)));
+        }
+        all.insert(all.end(), bytes.begin(), bytes.end());
+        i += count;
+    }
+    return all;
 }
 
 std::unique_ptr<ByteSource> UpstreamVersion::openSource() {

@@ -46,6 +46,8 @@ class UpstreamVersion : public std::enable_shared_from_this<UpstreamVersion> {
   private:
     UpstreamVersion(std::shared_ptr<Upstream> upstream, std::string url);
     Result<Bytes> fetch(ByteRange range, const std::atomic<bool>& stop);
+    Result<Bytes> fetchBlocks(ByteRange range, const std::atomic<bool>& stop);
+    std::string diskKey(std::uint64_t index) const;
     Result<Bytes> fetchBy(std::unique_ptr<ByteSource> source, ByteRange range, const std::atomic<bool>& stop);
     Result<std::unique_ptr<ByteSource>> takeSource();
 

@@ -52,7 +52,9 @@ void printAddress(const Server& server, const Site& site, bool asJson) {
 void reload(const char* verb, Server& server, const Site& site, AccessLog* log) {
     site.catalog().reload();
     AccessControl* access = site.access();
+    Upstream* upstream = site.catalog().upstream();
     for (const Status& status : {server.reloadCertificate(), access != nullptr ? access->reload() : Status(),
+                                 upstream != nullptr ? upstream->reloadTokens() : Status(),
                                  log != nullptr ? log->reopen() : Status()})
         if (!status)
             std::fprintf(stderr, "stipple %s: not reloaded: %s\n", verb, status.error().sentence().c_str());

@@ -55,8 +55,17 @@ void addUpstreamOptions(CLI::App& verb, UpstreamOptions& upstream) {
               ->default_str("15"),
           verb.add_option("--upstream-ca", upstream.caPath,
                           "PEM file of the certificates that other servers' must rest on, instead of the "
-                          "system's")})
+                          "system's"),
+          verb.add_option("--upstream-token-file", upstream.tokenPath,
+                          "File of the bearer tokens that other servers want: an origin and its token a line "
+                          "(https://bucket.example TOKEN); read again on SIGHUP"),
+          verb.add_option("--upstream-disk", upstream.diskFolder,
+                          "Folder of its own for parts of clouds at other servers, which are found there "
+                          "again after a restart")})
         option->group("Clouds at other servers");
+    addBytes(verb, "--upstream-disk-bytes", upstream.diskBytes, "Bytes of disk for them (default: 16G)")
+        ->needs("--upstream-disk")
+        ->group("Clouds at other servers");
 }
 
 } // namespace

@@ -2,7 +2,9 @@
 // bytes of two versions, and clear answers while the other is away.
 #include "client/headless/http_source.hpp"
 #include "client/headless/tls_trust.hpp"
+#include "server/access/token.hpp"
 #include "tests/http/support/raw_client.hpp"
+#include "tests/http/support/scripted_http_server.hpp"
 #include "tests/http/support/test_server.hpp"
 
 #include <arpa/inet.h>
@@ -10,6 +12,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <netinet/in.h>
 #include <nlohmann/json.hpp>
 #include <sys/socket.h>
@@ -223,9 +226,12 @@ TEST_CASE(
                     ++(bytes[0].starts_with(answer.body) || bytes[1].starts_with(answer.body) ? cut : mixed);
             }
         });
-    for (int i = 0; i < 30; ++i) {
+    // Often at first; then more seldom, until a download was quicker than that on this machine.
+    auto pause = 40ms;
+    for (int i = 0; i < 30 || (ofOne == 0 && pause < 10s); ++i) {
         replace(upstream.folder().cloud(), i % 2 ? b : a);
-        std::this_thread::sleep_for(40ms);
+        std::this_thread::sleep_for(pause);
+        pause = i < 30 ? pause : 2 * pause;
     }
     isOver = true;
     for (std::thread& client : clients)
@@ -288,6 +294,88 @@ TEST_CASE("an upstream that does not answer is a 504, one without the file a 404
     CHECK(problemOf(noCloud) == "cloud-unusable");
     CHECK(server::CloudCatalog::open({"ftp://host/x.stipple"}).error().code == ErrorCode::unsupported);
     CHECK(server::CloudCatalog::open({"http://host:0/x.stipple"}).error().code == ErrorCode::invalidArgument);
+}
+
+TEST_CASE("an upstream that wants a token gets the one in the file, and nobody else sees it") {
+    std::string token;
+    TestServer upstream(TestServer::quickLimits(), [&](TestFolder& folder) {
+        auto rules = need(server::freshAccessRules());
+        rules.privateClouds = {"town"};
+        auto made = need(server::makeToken(rules, "front", {"town"}, 1, 0));
+        token = made.text;
+        rules.tokens.push_back(made.rule);
+        std::string file = (folder.path() / "access.json").string();
+        REQUIRE(server::writeAccessFile(file, rules).ok());
+        server::SiteOptions options;
+        options.access = need(server::AccessControl::open(file));
+        return options;
+    });
+    auto without = serve({upstream.url(target)}, 0, quick());
+    CHECK(ask(*without, "GET " + target).status == 502);
+
+    // Through a server that redirects, which must not learn the token.
+    ScriptedHttpServer first([&](const std::string&) { return redirectTo(upstream.url(target)); });
+    fs::path file = upstream.folder().path() / "tokens";
+    std::string origin = upstream.url("/");
+    origin.pop_back();
+    std::ofstream(file) << origin << " " << token << "\n";
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write);
+    auto options = quick();
+    options.tokenPath = file.string();
+    for (const std::string& url : {upstream.url(target), first.origin() + target}) {
+        auto front = serve({url}, 0, options);
+        auto answer = ask(*front, "GET " + target);
+        CHECK(answer.status == 200);
+        CHECK(answer.body == readFile(upstream.folder().cloud()));
+        CHECK(ask(*front, "GET /metrics").body.find(token) == std::string::npos);
+    }
+    CHECK(first.requests().size() > 0);
+    for (const std::string& request : first.requests())
+        CHECK(request.find(token) == std::string::npos);
+
+    std::ofstream(file) << origin << "\n";
+    auto broken = server::CloudCatalog::open({upstream.url(target)}, {}, options);
+    REQUIRE_FALSE(broken.ok());
+    CHECK(broken.error().where == file.string() + ", line 1");
+}
+
+TEST_CASE("blocks on disk outlive the front: another one asks the upstream for none of them again") {
+    TestServer upstream;
+    writeCloud(upstream.folder().cloud().string(), 400'000, 3);
+    std::string bytes = readFile(upstream.folder().cloud());
+    server::UpstreamOptions options;
+    options.freshFor = 1h;
+    options.diskFolder = (upstream.folder().path() / "blocks").string();
+    double asked[2];
+    for (int round = 0; round < 2; ++round) {
+        auto front = serve({upstream.url(target)}, 0, options);
+        auto answer = ask(*front, "GET " + target);
+        CHECK(answer.body == bytes);
+        asked[round] = metric(*front, "stipple_upstream_bytes_total");
+    }
+    CHECK(asked[0] >= static_cast<double>(bytes.size()));
+    CHECK(asked[1] < 1000); // the header, to see which version it is
+
+    // Every block damaged: all are dropped and asked for again.
+    for (const auto& entry : fs::recursive_directory_iterator(options.diskFolder))
+        if (entry.path().extension() == ".block") {
+            std::fstream file(entry.path(), std::ios::in | std::ios::out | std::ios::binary);
+            file.seekg(-1, std::ios::end);
+            char last = static_cast<char>(file.get() ^ 1);
+            file.seekp(-1, std::ios::end);
+            file.put(last);
+        }
+    auto front = serve({upstream.url(target)}, 0, options);
+    CHECK(ask(*front, "GET " + target).body == bytes);
+    CHECK(metric(*front, "stipple_upstream_disk_damaged_total") >= 3);
+    CHECK(metric(*front, "stipple_upstream_bytes_total") >= static_cast<double>(bytes.size()));
+    front.reset();
+
+    // Another version has blocks of its own.
+    writeCloud(upstream.folder().cloud().string() + ".new", 400'000, 4);
+    fs::rename(upstream.folder().cloud().string() + ".new", upstream.folder().cloud());
+    front = serve({upstream.url(target)}, 0, options);
+    CHECK(ask(*front, "GET " + target).body == readFile(upstream.folder().cloud()));
 }
 
 TEST_CASE("https: a certificate that rests on a trusted one is believed, any other is not") {
