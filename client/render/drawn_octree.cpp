@@ -14,7 +14,7 @@ struct Place {
 };
 struct PlaceHash {
     std::size_t operator()(const Place& place) const {
-        return NodeKeyHash()(place.key) * 0x9E3779B97F4A7C15ull + place.cloud;
+        return static_cast<std::size_t>(NodeKeyHash()(place.key) * 0x9E3779B97F4A7C15ull + place.cloud);
     }
 };
 
