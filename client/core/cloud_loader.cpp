@@ -118,6 +118,11 @@ std::optional<LoadItem> CloudLoader::pictureItem(std::uint32_t node, int strata,
     return item;
 }
 
+LoadItem CloudLoader::pointsItem(std::uint32_t node) const {
+    const NodeEntry& entry = hierarchy.node(node).entry;
+    return itemFor(LoadKind::points, node, {entry.offsetBytes, entry.sizeBytes()});
+}
+
 std::optional<LoadItem> CloudLoader::intensityItem(std::uint32_t node, const CachedNode* cached) const {
     if (!needsIntensity || (cached && (cached->intensity || cached->decodingIntensity ||
                                        (cached->node && cached->node->intensity.size() ==

@@ -49,6 +49,8 @@ struct CloudLoader {
     LoadItem chunkItem(std::uint32_t parent) const;
     std::optional<LoadItem> pictureItem(std::uint32_t node, int strata, const CachedNode* cached) const;
     std::optional<LoadItem> intensityItem(std::uint32_t node, const CachedNode* cached) const;
+    // All bytes of a node, whatever is here of it already (LoadKind::points).
+    LoadItem pointsItem(std::uint32_t node) const;
 
   private:
     LoadItem itemFor(LoadKind kind, std::uint64_t id, ByteRange range) const;

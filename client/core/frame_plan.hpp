@@ -59,7 +59,7 @@ struct DrawNode {
     Vec3d scale;                              // world units per integer
     double cameraZ = 0;      // world z of the camera, for elevation: z = cameraZ + relative.z
     double spacing = 0;      // minimum distance of the node's points, world units
-    std::uint32_t cloud = 0; // nodes of one octree have the same
+    std::uint32_t cloud = 0; // whose node it is (CloudId of the session); nodes of one octree have the same
 };
 
 struct FramePlan {

@@ -53,6 +53,8 @@ class Hierarchy {
     void markChildrenFailed(std::size_t parent);
 
     std::size_t size() const { return nodes_.size(); }
+    // Index of the node of that key; -1 if it is not known.
+    std::int32_t find(const NodeKey& key) const { return nodes_.empty() ? -1 : findFrom(0, key); }
     const HierarchyNode& node(std::size_t index) const { return nodes_[index]; }
     const CloudMetadata& metadata() const { return *metadata_; }
     // Geometry of any node, known or not.

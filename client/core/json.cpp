@@ -299,4 +299,26 @@ json toJson(const CloudState& cloud) {
     return value;
 }
 
+json toJson(const PointRecord& record) {
+    auto valueJson = [](const PointValue& value, std::size_t i) -> json {
+        if (value.attribute.scale != 1 || value.attribute.offset != 0)
+            return value.value(i);
+        return std::visit([](auto stored) { return json(stored); }, value.stored[i]);
+    };
+    json values = json::object();
+    for (const PointValue& value : record.values) {
+        json list = json::array();
+        for (std::size_t i = 0; i < value.stored.size(); ++i)
+            list.push_back(valueJson(value, i));
+        values[value.attribute.name] = list.size() == 1 ? list[0] : list;
+    }
+    return {{"integers", {record.integers.x, record.integers.y, record.integers.z}},
+            {"position", vectorJson(record.position)},
+            {"values", std::move(values)}};
+}
+
+json toJson(const PointIdentity& point) {
+    return {{"cloud", point.cloud}, {"node", point.node.text()}, {"index", point.index}};
+}
+
 } // namespace stipple

@@ -11,6 +11,7 @@
 
 #include "client/core/camera.hpp"
 #include "client/core/counters.hpp"
+#include "client/core/point_record.hpp"
 #include "client/core/style.hpp"
 #include "client/core/view_session.hpp"
 #include "shared/base/result.hpp"
@@ -45,6 +46,10 @@ nlohmann::json toJson(const BoxD& box); // {"min": […], "max": […]}, or null
 // Name, stage, visibility, the error if it failed, and once ready: point count, world bounds, CRS,
 // attribute names.
 nlohmann::json toJson(const CloudState& cloud);
+// {"integers": [x, y, z], "position": [x, y, z], "values": {"Intensity": 12, …}}: values as stored × scale +
+// offset, whole numbers as such; several components as an array.
+nlohmann::json toJson(const PointRecord& record);
+nlohmann::json toJson(const PointIdentity& point); // {"cloud": 1, "node": "3-1-2-0", "index": 17}
 
 // A JSON value converts to and from text by itself; these take nothing but a value.
 namespace detail {

@@ -18,7 +18,7 @@
 
 namespace stipple {
 
-enum class LoadKind : std::uint8_t { opening, chunk, picture, intensity };
+enum class LoadKind : std::uint8_t { opening, chunk, picture, intensity, points };
 
 struct LoadKey {
     std::uint32_t cloud = 0;

@@ -10,6 +10,11 @@ namespace {
 // With several things to wait for, each is waited for this long in turn.
 constexpr std::chrono::milliseconds waitSlice{2};
 
+// A file that is another one now: nothing of its cloud can be used any more.
+bool isFatal(const Result<Bytes>& bytes) {
+    return !bytes.ok() && bytes.error().code == ErrorCode::changed;
+}
+
 std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
     return cloud.hierarchy.node(node).entry.key.text();
 }
@@ -140,6 +145,10 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     CloudLoader& cloud = at->second;
     auto node = static_cast<std::uint32_t>(loaded.item.key.id);
     arrivals.changed = true;
+    if (loaded.item.key.kind == LoadKind::points && !isFatal(loaded.bytes)) {
+        pointQueries_.takeLoaded(cloud, node, loaded.bytes);
+        return;
+    }
     if (!loaded.bytes.ok()) {
         takeFailure(cloud, loaded.item, loaded.bytes.error(), arrivals);
         return;
@@ -165,6 +174,8 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     case LoadKind::intensity:
         decoding_.takeIntensity(cloud, node, std::move(*loaded.bytes));
         break;
+    case LoadKind::points:
+        break; // taken above
     }
 }
 
@@ -195,6 +206,7 @@ void SessionLoading::failed(CloudLoader& cloud, Arrivals& arrivals) {
 void SessionLoading::release(CloudId id) {
     queue_.removeSource(id);
     cache_.eraseCloud(id);
+    pointQueries_.cancel(id);
     std::erase_if(local_, [&](const Loaded& loaded) { return loaded.item.key.cloud == id; });
 }
 

@@ -9,6 +9,7 @@
 #include "client/core/load_queue.hpp"
 #include "client/core/node_cache.hpp"
 #include "client/core/node_decoding.hpp"
+#include "client/core/point_query.hpp"
 #include "client/core/view_session.hpp"
 
 #include <deque>
@@ -32,6 +33,8 @@ class SessionLoading {
     const CloudMap& clouds() const { return clouds_; }
     NodeCache& cache() { return cache_; }
     const NodeCache& cache() const { return cache_; }
+    PointQueries& pointQueries() { return pointQueries_; }
+    const PointQueries& pointQueries() const { return pointQueries_; }
     const std::deque<Error>& errors() const { return errors_; } // at most maxRecentErrors, newest last
 
     // Lets sources and decoder answer, waiting up to `wait` for the first if something is on its way.
@@ -68,6 +71,7 @@ class SessionLoading {
     NodeCache cache_;
     LoadQueue queue_;
     NodeDecoding decoding_;
+    PointQueries pointQueries_;
     CloudMap clouds_;
     CloudId lastCloud_ = 0;
     std::vector<Loaded> local_; // wanted, and here without a request

@@ -3,6 +3,7 @@
 #include "client/core/frame_planner.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/session_loading.hpp"
+#include "shared/base/text.hpp"
 
 #include <algorithm>
 
@@ -109,6 +110,17 @@ class Session final : public ViewSession {
         return now;
     }
 
+    Status askPoint(const PointIdentity& point) override {
+        auto cloud = loading_.clouds().find(point.cloud);
+        if (cloud == loading_.clouds().end())
+            return Error{ErrorCode::invalidArgument, cat("there is no cloud ", point.cloud), "", ""};
+        STIPPLE_CHECK(loading_.pointQueries().ask(cloud->second, point));
+        dirty_ = true; // what is to be loaded has changed
+        return {};
+    }
+    std::vector<PointAnswer> takePointAnswers() override { return loading_.pointQueries().take(); }
+    bool pointsPending() const override { return loading_.pointQueries().pending(); }
+
     std::vector<Error> recentErrors() const override {
         return {loading_.errors().begin(), loading_.errors().end()};
     }
@@ -183,6 +195,10 @@ class Session final : public ViewSession {
         for (auto& [id, cloud] : loading_.clouds())
             if (auto item = cloud.openingItem())
                 items.push_back(std::move(*item));
+        // Somebody waits for an answer about a point.
+        for (auto& [id, cloud] : loading_.clouds())
+            for (LoadItem& item : loading_.pointQueries().items(cloud))
+                items.push_back(std::move(item));
         // Chunks are small, and what they hide may matter more than any node that is known.
         for (const WantedChunk& chunk : selection_.chunks)
             items.push_back(loading_.clouds().at(selectionIds_[chunk.cloud]).chunkItem(chunk.node));
@@ -213,7 +229,6 @@ class Session final : public ViewSession {
         next.counters = selection_.counters;
         next.counters.passesRun = plan_.counters.passesRun;
         next.counters.passesSkipped = plan_.counters.passesSkipped;
-        planClouds_.clear();
         for (const SelectedNode& selected : selection_.nodes) {
             if (selected.drawPoints == 0)
                 continue;
@@ -222,7 +237,6 @@ class Session final : public ViewSession {
             next.nodes.push_back(
                 planNode(cached->node, selected.drawPoints, *cloud.opened.metadata, view_.eye));
             next.nodes.back().cloud = cloud.state.id;
-            planClouds_.push_back(cloud.state.id);
         }
         bool differs = !drawnOnce_ || !samePicture(next, plan_);
         drawnOnce_ = true;
@@ -241,16 +255,8 @@ class Session final : public ViewSession {
 
     // Lets go of what the plan and the selection hold of the cloud.
     void forget(CloudId id) {
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < plan_.nodes.size(); ++i)
-            if (planClouds_[i] != id) {
-                planClouds_[kept] = planClouds_[i];
-                plan_.nodes[kept++] = plan_.nodes[i];
-            }
-        if (kept < plan_.nodes.size())
+        if (std::erase_if(plan_.nodes, [&](const DrawNode& node) { return node.cloud == id; }) > 0)
             drawnOnce_ = false; // the next plan differs from the last picture
-        plan_.nodes.resize(kept);
-        planClouds_.resize(kept);
         selection_ = {};
         selectionIds_.clear();
         dirty_ = true;
@@ -271,7 +277,6 @@ class Session final : public ViewSession {
     Selection selection_;
     std::vector<CloudId> selectionIds_; // of selection_'s cloud indices
     FramePlan plan_;
-    std::vector<CloudId> planClouds_; // parallel to plan_.nodes
     bool drawnOnce_ = false;
 };
 

@@ -8,6 +8,7 @@
 #include "client/core/counters.hpp"
 #include "client/core/frame_plan.hpp"
 #include "client/core/node_decoder.hpp"
+#include "client/core/point_record.hpp"
 #include "client/core/style.hpp"
 #include "shared/io/byte_source.hpp"
 
@@ -77,6 +78,13 @@ class ViewSession {
     // way.
     virtual bool settled() const = 0;
     virtual SessionCounters counters() const = 0;
+
+    // Asks for everything the file says of a point: reads its node, whatever is here of it. The answer comes
+    // with takePointAnswers(), after updates. Errors: invalidArgument for a point that is not there.
+    virtual Status askPoint(const PointIdentity& point) = 0;
+    // Each answer exactly once; also errors, and `cancelled` if the cloud was closed meanwhile.
+    virtual std::vector<PointAnswer> takePointAnswers() = 0;
+    virtual bool pointsPending() const = 0;
     // The most recent loading errors (at most maxRecentErrors), newest last, each when it became final: what
     // may pass is tried LoadQueue::maxAttempts times, a block that does not decode twice. A node that failed
     // leaves the others as they are; a file that changed fails its cloud.

@@ -4,6 +4,7 @@
 #include "client/headless/session_loader.hpp"
 #include "client/headless/thread_decoder.hpp"
 #include "client/render/raster_setup.hpp"
+#include "client/render/software_renderer.hpp"
 #include "shared/base/text.hpp"
 
 #include <nlohmann/json.hpp>
@@ -52,20 +53,9 @@ class Session final : public PictureSession {
     }
 
     Result<Picture> draw(const PictureRequest& request) override {
-        STIPPLE_CHECK(checkRequest(request));
         auto start = Clock::now();
         Picture picture;
-        STIPPLE_TRY(camera, cameraOf(request, session_->contentBounds()));
-        session_->setViewport(request.width, request.height);
-        session_->setStyle(request.style);
-        session_->setCamera(camera);
-        session_->setLimits(request.limits);
-        session_->update(); // what was settled for another picture is not for this one
-        SessionLoader loader(*session_, name_, request.timeout, request.stop);
-        bool firstIsEnough = request.until == Until::first;
-        STIPPLE_CHECK(loader.until([&] {
-            return session_->settled() || (firstIsEnough && session_->plan().counters.pointsDrawn > 0);
-        }));
+        STIPPLE_TRY(camera, load(request));
         picture.loadSeconds = secondsSince(start);
 
         FramePlan plan = session_->plan();
@@ -81,7 +71,47 @@ class Session final : public PictureSession {
         return picture;
     }
 
+    Result<std::optional<PickedPoint>> pick(const PictureRequest& request,
+                                            const PickRequest& pointer) override {
+        STIPPLE_TRY(camera, load(request));
+        (void)camera;
+        auto renderer = SoftwareRenderer::create(request.threads);
+        std::optional<PickHit> hit = renderer->pick(session_->plan(), pointer);
+        if (!hit)
+            return std::optional<PickedPoint>();
+        PickedPoint picked;
+        picked.identity = {hit->cloud, hit->node->key, hit->point};
+        picked.pixelsAway = hit->pixelsAway;
+        picked.distance = hit->distance;
+        STIPPLE_CHECK(session_->askPoint(picked.identity));
+        SessionLoader loader(*session_, name_, request.timeout, request.stop);
+        STIPPLE_CHECK(loader.until([&] { return !session_->pointsPending(); }));
+        for (PointAnswer& answer : session_->takePointAnswers())
+            if (answer.point == picked.identity) {
+                STIPPLE_TRY(record, std::move(answer.record));
+                picked.record = std::move(record);
+            }
+        return std::optional(std::move(picked));
+    }
+
   private:
+    // Loads what the request wants to be seen.
+    Result<Camera> load(const PictureRequest& request) {
+        STIPPLE_CHECK(checkRequest(request));
+        STIPPLE_TRY(camera, cameraOf(request, session_->contentBounds()));
+        session_->setViewport(request.width, request.height);
+        session_->setStyle(request.style);
+        session_->setCamera(camera);
+        session_->setLimits(request.limits);
+        session_->update(); // what was settled for another picture is not for this one
+        SessionLoader loader(*session_, name_, request.timeout, request.stop);
+        bool firstIsEnough = request.until == Until::first;
+        STIPPLE_CHECK(loader.until([&] {
+            return session_->settled() || (firstIsEnough && session_->plan().counters.pointsDrawn > 0);
+        }));
+        return camera;
+    }
+
     // Nothing is wanted before the camera is known.
     static SessionLimits withoutPoints(SessionLimits limits) {
         limits.pointBudget = 0;

@@ -8,6 +8,7 @@
 #include "client/core/view_session.hpp"
 #include "client/headless/frame_drawer.hpp"
 #include "client/render/image.hpp"
+#include "client/render/pick.hpp"
 #include "shared/base/result.hpp"
 #include "shared/io/byte_source.hpp"
 
@@ -46,6 +47,14 @@ struct Picture {
     double openSeconds = 0, loadSeconds = 0, drawSeconds = 0; // until ready; until settled; drawing
 };
 
+// A point that a picture shows.
+struct PickedPoint {
+    PointIdentity identity;
+    PointRecord record;    // with the value of every attribute
+    double pixelsAway = 0; // see PickHit
+    double distance = 0;
+};
+
 // What can be said against a request before anything is opened: size, view. invalidArgument.
 Status checkRequest(const PictureRequest& request);
 
@@ -60,6 +69,11 @@ class PictureSession {
     // the file's bytes; networkFailed or limitExceeded when time runs out; cancelled.
     static Result<std::unique_ptr<PictureSession>> open(std::unique_ptr<ByteSource> source,
                                                         const PictureRequest& request);
+    // Which point of the picture that `request` describes is under the pointer, and all that the file says of
+    // it; none where no pixel near enough shows a point. By the software renderer, whatever request.backend
+    // says. Errors: those of draw().
+    virtual Result<std::optional<PickedPoint>> pick(const PictureRequest& request,
+                                                    const PickRequest& pointer) = 0;
     // openSeconds is 0. Errors: those of the request, of the source, of the file's bytes (also of single
     // nodes: a picture with holes is no answer), of the GL driver; those of open(). After an error the
     // session is not to be used again.

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -30,6 +31,7 @@ struct Options {
     std::string until = "complete";
     double timeoutSeconds = 60;
     bool json = false;
+    std::string pick; // "X,Y"
     PictureRequest request;
 };
 
@@ -58,7 +60,43 @@ Result<PictureRequest> requestOf(const Options& options) {
     return request;
 }
 
+// "320,240.5".
+Result<PickRequest> pointerOf(const std::string& text) {
+    PickRequest pointer;
+    int read = 0;
+    bool isPlace = std::sscanf(text.c_str(), "%lf,%lf%n", &pointer.x, &pointer.y, &read) == 2 &&
+                   static_cast<std::size_t>(read) == text.size() && std::isfinite(pointer.x) &&
+                   std::isfinite(pointer.y);
+    if (!isPlace)
+        return Error{ErrorCode::invalidArgument, cat("'", text, "' is no place in the picture"), "--pick",
+                     "write X,Y in pixels from the left and from the top, for example 640,360"};
+    return pointer;
+}
+
+// Prints what is under the pointer as JSON: null if nothing is.
+Status pick(const Options& options) {
+    STIPPLE_TRY(request, requestOf(options));
+    STIPPLE_TRY(pointer, pointerOf(options.pick));
+    STIPPLE_TRY(source, openSource(options.input));
+    STIPPLE_TRY(session, PictureSession::open(std::move(source), request));
+    STIPPLE_TRY(picked, session->pick(request, pointer));
+    nlohmann::json answer;
+    if (picked) {
+        answer = toJson(picked->record);
+        answer["point"] = toJson(picked->identity);
+        answer["pixelsAway"] = picked->pixelsAway;
+        answer["distance"] = picked->distance;
+    }
+    std::printf("%s\n", jsonText(answer).c_str());
+    return {};
+}
+
 Status render(const Options& options) {
+    if (options.output.empty() == options.pick.empty())
+        return Error{ErrorCode::invalidArgument, "either a picture or a point is asked for", "render",
+                     "give --output OUT.png, or --pick X,Y"};
+    if (!options.pick.empty())
+        return pick(options);
     STIPPLE_TRY(request, requestOf(options));
     STIPPLE_TRY(source, openSource(options.input));
     // An output that can't be written is known before anything is loaded.
@@ -99,7 +137,10 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
     auto options = std::make_shared<Options>();
     CLI::App* verb = program.add_subcommand("render", "Draw a picture of a .stipple file, local or served");
     verb->add_option("input", options->input, "File, or address (http://…)")->required();
-    verb->add_option("-o,--output", options->output, "Picture to write (PNG)")->required();
+    verb->add_option("-o,--output", options->output, "Picture to write (PNG)");
+    verb->add_option("--pick", options->pick,
+                     "Instead of a picture: X,Y in pixels from the top left; prints the point that is shown "
+                     "there, or next to it, with all its attributes, as JSON");
     verb->add_option(
             "--view", options->request.view,
             "top, front, iso, or a camera as JSON: {\"position\": [x, y, z], \"target\": [x, y, z], …}")

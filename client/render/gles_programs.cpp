@@ -15,6 +15,7 @@ std::string definesFor(const PointVariant& variant) {
     defines += variant.circle ? "#define CIRCLE\n" : "";
     defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
     defines += variant.blend ? "#define BLEND\n" : "";
+    defines += variant.identity ? "#define IDENTITY\n" : "";
     defines += variant.captureLevels ? "#define CAPTURE_LEVELS\n" : "";
     if (variant.adaptive)
         defines += cat("#define ADAPTIVE\n#define OCTREE_WIDTH ", octreeTextureWidth, "\n");
@@ -86,6 +87,8 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.blendFactor = at("uBlendFactor");
     made.nearest = at("uNearest");
     made.hardness = at("uHardness");
+    made.nodeIndex = at("uNode");
+    made.window = at("uWindow");
     made.program = std::move(program);
     return made;
 }
@@ -134,6 +137,11 @@ void PointProgram::setNode(const RasterNode& node) const {
     glUniform2f(ramp, node.rampScale, node.rampOffset);
     glUniform2f(rank, node.rankBase, node.rankStep);
     glUniform1f(nodeSize64, node.nodeSize64);
+}
+
+void PointProgram::setIdentity(std::uint32_t node, int left, int bottom) const {
+    glUniform1ui(nodeIndex, node);
+    glUniform2i(window, left, bottom);
 }
 
 void PointProgram::setOctreePlace(std::uint32_t place, const ResidentNode& node) const {

@@ -16,6 +16,7 @@ struct PointVariant {
     bool adaptive = false;
     bool blend = false;         // the pass of splats that blends
     bool captureLevels = false; // adaptive; vLevels goes to transform feedback
+    bool identity = false;      // writes which point a pixel shows (client/render/pick.hpp), not its colour
 
     friend auto operator<=>(const PointVariant&, const PointVariant&) = default;
     static PointVariant of(const RasterFrame& frame, const ResidentNode& node);
@@ -35,10 +36,13 @@ struct PointProgram {
 
     GLint octree, octreePlace, nodeBits, nodeSize64;
     GLint radiusScale, blendFactor, nearest, hardness;
+    GLint nodeIndex, window; // of programs that write identities
 
     static Result<PointProgram> make(const PointVariant& variant);
     void useFor(const RasterFrame& frame) const;
     void setNode(const RasterNode& node) const;
+    // Of programs that write identities: what stands for the node, and the window's lower left pixel.
+    void setIdentity(std::uint32_t node, int left, int bottom) const;
     // Adaptive sizes: the node's place in the octree texture.
     void setOctreePlace(std::uint32_t place, const ResidentNode& node) const;
 };

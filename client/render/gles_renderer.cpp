@@ -4,6 +4,7 @@
 #include "client/render/gles_nodes.hpp"
 #include "client/render/gles_objects.hpp"
 #include "client/render/gles_octree.hpp"
+#include "client/render/gles_picker.hpp"
 #include "client/render/gles_programs.hpp"
 #include "client/render/gles_targets.hpp"
 #include "client/render/gradients.hpp"
@@ -97,6 +98,19 @@ class Gles3Renderer final : public GlesRenderer {
         return depthReader_.read(frame, points_.depth.id());
     }
 
+    Status startPick(const FramePlan& plan, const PickRequest& request) override {
+        STIPPLE_CHECK(checkSize(plan));
+        PickTarget target = pickTarget(plan, request);
+        STIPPLE_CHECK(picker_.begin(target));
+        setPointState();
+        STIPPLE_CHECK(drawNodes(plan, target.frame, target.order, {.identities = &target.window}));
+        glBindVertexArray(0);
+        picker_.finish(std::move(target));
+        return {};
+    }
+    Result<std::optional<PickAnswer>> takePick() override { return picker_.take(); }
+    bool pickPending() const override { return picker_.pending(); }
+
     std::uint64_t gpuBytes() const override {
         return nodes_.bytes() + points_.bytes() + sums_.bytes() + octree_.bytes() + 4ull * gradientEntries;
     }
@@ -142,6 +156,14 @@ class Gles3Renderer final : public GlesRenderer {
     Status drawPoints(const FramePlan& plan, const RasterFrame& frame) {
         const auto& background = plan.style.background;
         glViewport(0, 0, plan.width, plan.height);
+        setPointState();
+        glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
+        glClearDepthf(1);
+        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+        return drawNodes(plan, frame, drawOrder(plan), {});
+    }
+
+    static void setPointState() {
         glDisable(GL_SCISSOR_TEST);
         glDisable(GL_BLEND);
         glDisable(GL_CULL_FACE);
@@ -151,10 +173,6 @@ class Gles3Renderer final : public GlesRenderer {
         glDepthMask(GL_TRUE);
         glDepthRangef(0, 1);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
-        glClearDepthf(1);
-        glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        return drawNodes(plan, frame, false);
     }
 
     // The second pass of splats, over the depths of the first.
@@ -169,15 +187,23 @@ class Gles3Renderer final : public GlesRenderer {
         glBlendFunc(GL_ONE, GL_ONE);
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, points_.depth.id());
-        Status drawn = drawNodes(plan, frame, true);
+        Status drawn = drawNodes(plan, frame, drawOrder(plan), {.blends = true});
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, 0);
         glDisable(GL_BLEND);
         return drawn;
     }
 
-    // All points, into what is bound.
-    Status drawNodes(const FramePlan& plan, const RasterFrame& frame, bool blends) {
+    // What points write: their colour; weighted colours, for a sum; or, in a window of the picture, which
+    // they are, by their node's place in the order.
+    struct Drawing {
+        bool blends = false;
+        const PickWindow* identities = nullptr;
+    };
+
+    // The points of those nodes, into what is bound.
+    Status drawNodes(const FramePlan& plan, const RasterFrame& frame, const std::vector<std::size_t>& order,
+                     const Drawing& how) {
         if (frame.adaptive)
             octree_.load(plan);
         else
@@ -189,17 +215,22 @@ class Gles3Renderer final : public GlesRenderer {
         glVertexAttrib1f(intensityLocation, 0);
 
         const PointProgram* inUse = nullptr;
-        for (std::size_t index : drawOrder(plan)) {
+        for (std::size_t place = 0; place < order.size(); ++place) {
+            const std::size_t index = order[place];
             const DrawNode& node = plan.nodes[index];
             PointVariant variant = PointVariant::of(frame, *node.node);
-            variant.blend = blends;
+            variant.blend = how.blends;
+            variant.identity = how.identities != nullptr;
             STIPPLE_TRY(program, pointPrograms_.get(variant));
             if (program != inUse)
                 program->useFor(frame);
             inUse = program;
             RasterNode raster = rasterNode(plan, node);
-            nodes_.bind(*node.node, raster.source);
+            nodes_.bind(*node.node, how.identities ? ColourSource::plain : raster.source);
             program->setNode(raster);
+            if (how.identities)
+                program->setIdentity(static_cast<std::uint32_t>(place), how.identities->left,
+                                     how.identities->bottom);
             if (frame.adaptive)
                 program->setOctreePlace(octree_.placeOf(index), *node.node);
             glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(node.pointCount));
@@ -235,6 +266,7 @@ class Gles3Renderer final : public GlesRenderer {
     std::string_view limitation_;
     NodeBuffers nodes_;
     DepthReader depthReader_;
+    Picker picker_;
     std::optional<bool> defaultIsDirect_;
 };
 

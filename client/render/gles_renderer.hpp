@@ -3,9 +3,11 @@
 #pragma once
 
 #include "client/core/frame_plan.hpp"
+#include "client/render/pick.hpp"
 #include "shared/base/result.hpp"
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -30,6 +32,14 @@ class GlesRenderer {
     // View distance of the point that each pixel of that plan shows, rows from top to bottom; 0 where there
     // is none. Draws the points once more, into a buffer of its own, and waits for the GPU: for measuring.
     virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
+
+    // Asks which point the pointer is on, in the picture that draw() would give of the plan. One question at
+    // a time: a new one takes the place of one that was not answered. Changes the framebuffer that is bound.
+    virtual Status startPick(const FramePlan& plan, const PickRequest& request) = 0;
+    // The answer, once; nothing while the GPU has not given it, or when nothing was asked. Never waits.
+    virtual Result<std::optional<PickAnswer>> takePick() = 0;
+    virtual bool pickPending() const = 0;
+
     virtual std::uint64_t gpuBytes() const = 0;
     // What the last plan asked for that this context can't do, and what was drawn instead: a sentence. Empty:
     // nothing.

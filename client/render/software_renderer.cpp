@@ -27,7 +27,8 @@ class CellRenderer final : public SoftwareRenderer {
             return image_;
         RasterFrame frame = frame_ = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
-        placeNodes(plan);
+        placeNodes(plan, drawOrder(plan));
+        clearRows(0, image_.height);
         drawPoints(frame);
         if (frame.splats)
             blend(plan, frame);
@@ -47,7 +48,44 @@ class CellRenderer final : public SoftwareRenderer {
         return result;
     }
 
+    std::optional<PickHit> pick(const FramePlan& plan, const PickRequest& request) override {
+        PickTarget target = pickTarget(plan, request);
+        if (!resize(plan) || target.window.empty())
+            return std::nullopt;
+        frame_ = target.frame;
+        placeNodes(plan, target.order);
+        // Elsewhere the cells keep what they held, and nobody looks at them.
+        int top = image_.height - target.window.bottom;
+        clearRows(top - target.window.height, top);
+        drawPoints(target.frame);
+        std::vector<PickSample> samples = samplesIn(target.window);
+        clearRows(0, image_.height); // the last picture is gone
+        return nearestHit(target, samples);
+    }
+
   private:
+    std::vector<PickSample> samplesIn(const PickWindow& window) const {
+        std::vector<PickSample> samples;
+        for (int row = window.bottom; row < window.bottom + window.height; ++row) {
+            std::size_t line =
+                static_cast<std::size_t>(image_.height - 1 - row) * static_cast<std::size_t>(image_.width);
+            for (int column = window.left; column < window.left + window.width; ++column)
+                if (std::uint64_t cell = cells_[line + static_cast<std::size_t>(column)]; cell != emptyCell)
+                    samples.push_back(sampleOf(cell, column, row));
+        }
+        return samples;
+    }
+
+    PickSample sampleOf(std::uint64_t cell, int column, int row) const {
+        std::uint64_t index = cell & indexMask;
+        auto after =
+            std::upper_bound(nodes_.begin(), nodes_.end(), index,
+                             [](std::uint64_t at, const PlacedNode& node) { return at < node.firstIndex; });
+        std::size_t node = static_cast<std::size_t>(after - nodes_.begin()) - 1;
+        return {column, row, static_cast<std::uint32_t>(cell >> indexBits), node,
+                static_cast<std::uint32_t>(index - nodes_[node].firstIndex)};
+    }
+
     // False: there is nothing to draw into.
     bool resize(const FramePlan& plan) {
         bool drawable = plan.width > 0 && plan.height > 0 && plan.width <= maxPictureSide &&
@@ -71,25 +109,29 @@ class CellRenderer final : public SoftwareRenderer {
         });
     }
 
-    void placeNodes(const FramePlan& plan) {
+    void placeNodes(const FramePlan& plan, const std::vector<std::size_t>& order) {
         if (!frame_.splats)
             sums_.clear();
         octree_ = frame_.adaptive ? drawnOctree(plan) : DrawnOctree();
         nodes_.clear();
         std::uint64_t index = 0;
-        for (std::size_t i : drawOrder(plan)) {
+        for (std::size_t i : order) {
             nodes_.push_back({&plan.nodes[i], rasterNode(plan, plan.nodes[i]), index,
                               frame_.adaptive ? octree_.places[i] : 0});
             index += plan.nodes[i].pointCount;
         }
     }
 
-    void drawPoints(const RasterFrame& frame) {
+    void clearRows(int first, int end) {
         byRows([&](int y) {
             auto width = static_cast<std::size_t>(image_.width);
-            std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width),
-                        width, emptyCell);
+            if (y >= first && y < end)
+                std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width),
+                            width, emptyCell);
         });
+    }
+
+    void drawPoints(const RasterFrame& frame) {
         runs_.clear();
         runNodes_.clear();
         for (const PlacedNode& placed : nodes_)

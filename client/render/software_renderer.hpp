@@ -4,8 +4,10 @@
 
 #include "client/core/frame_plan.hpp"
 #include "client/render/image.hpp"
+#include "client/render/pick.hpp"
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace stipple {
@@ -21,8 +23,12 @@ class SoftwareRenderer {
     virtual const Image& render(FramePlan& plan) = 0;
 
     // Of the last picture: the view distance of each pixel's point, rows from top to bottom; 0 where there is
-    // none.
+    // none, and everywhere after pick().
     virtual std::vector<float> distances() const = 0;
+
+    // The point that the pointer is on, in the picture that render() would draw of the plan; none if no pixel
+    // near enough shows one. Draws only what can be there, and no colours.
+    virtual std::optional<PickHit> pick(const FramePlan& plan, const PickRequest& request) = 0;
 };
 
 } // namespace stipple

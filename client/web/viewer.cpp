@@ -8,6 +8,8 @@
 
 #include <emscripten/heap.h>
 
+#include <utility>
+
 namespace stipple::web {
 namespace {
 
@@ -142,6 +144,64 @@ bool Viewer::frame() {
     Status status = renderer_->draw(drawn_);
     drawError_ = status.ok() ? std::nullopt : std::optional(status.error());
     return true;
+}
+
+namespace {
+PointIdentity identityOf(const PickHit& hit) {
+    return {hit.cloud, hit.node->key, hit.point};
+}
+std::string pickError(const Error& error) {
+    return jsonText({{"pending", false}, {"error", error.sentence()}});
+}
+} // namespace
+
+Status Viewer::pick(double x, double y, int radius) {
+    picked_.reset();
+    if (!renderer_ || drawn_.width == 0)
+        return Error{ErrorCode::invalidArgument, "there is no picture yet", "", ""};
+    return renderer_->startPick(drawn_, {x, y, radius});
+}
+
+nlohmann::json Viewer::pickedJson(const PickHit& hit, const PointRecord& record) const {
+    nlohmann::json point = toJson(record);
+    point["point"] = toJson(identityOf(hit));
+    point["pixelsAway"] = hit.pixelsAway;
+    point["distance"] = hit.distance;
+    for (const CloudState& cloud : session_->clouds())
+        if (cloud.id == hit.cloud) {
+            point["cloudName"] = cloud.name;
+            point["crs"] = cloud.metadata ? cloud.metadata->crs.name : "";
+        }
+    return point;
+}
+
+std::string Viewer::takePickJson() {
+    const nlohmann::json pending{{"pending", true}}, nothing{{"pending", false}, {"point", nullptr}};
+    if (!picked_) {
+        if (!renderer_ || !renderer_->pickPending())
+            return jsonText(nothing);
+        auto answer = renderer_->takePick();
+        if (!answer.ok())
+            return pickError(answer.error());
+        if (!*answer)
+            return jsonText(pending);
+        if (!(*answer)->hit)
+            return jsonText(nothing);
+        picked_ = (*answer)->hit;
+        session_->takePointAnswers(); // of questions that nobody waits for any more
+        if (Status asked = session_->askPoint(identityOf(*picked_)); !asked.ok()) {
+            picked_.reset();
+            return pickError(asked.error());
+        }
+    }
+    for (const PointAnswer& answer : session_->takePointAnswers())
+        if (answer.point == identityOf(*picked_)) {
+            PickHit hit = *std::exchange(picked_, std::nullopt);
+            if (!answer.record.ok())
+                return pickError(answer.record.error());
+            return jsonText({{"pending", false}, {"point", pickedJson(hit, *answer.record)}});
+        }
+    return jsonText(pending);
 }
 
 bool Viewer::settled() const {

@@ -6,6 +6,8 @@
 #include "client/render/gles_renderer.hpp"
 #include "client/web/worker_decoder.hpp"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +42,14 @@ class Viewer {
     Status showView(const std::string& name);
     Status setProjection(const std::string& name);
 
+    // Asks what is under the pointer in the present picture; x, y in pixels of the canvas from the top left.
+    // The answer comes with takePickJson(), between frames: a new question takes the place of an older one.
+    Status pick(double x, double y, int radius);
+    // {"pending": true} while the GPU or the file has not answered; {"pending": false, "point": null} if
+    // there is nothing; else "point" is the record (client/core/json.hpp) with "point", "pixelsAway",
+    // "distance", "cloudName". {"pending": false, "error": sentence} for what can't be read.
+    std::string takePickJson();
+
     // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
     // kept for drawError().
     bool frame();
@@ -60,6 +70,7 @@ class Viewer {
 
   private:
     Viewer();
+    nlohmann::json pickedJson(const PickHit& hit, const PointRecord& record) const;
     double aspect() const { return static_cast<double>(width_) / height_; }
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
     bool pendingViewIsDue() const { return pendingView_ && !session_->contentBounds().empty(); }
@@ -73,6 +84,7 @@ class Viewer {
     std::optional<NamedView> pendingView_ = NamedView::iso; // shown as soon as a cloud is ready
     bool drawAgain_ = false;
     std::optional<Error> drawError_;
+    std::optional<PickHit> picked_; // whose values are on their way
 };
 
 } // namespace stipple::web

@@ -92,6 +92,14 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_set_projection(const char* name) {
     return give(viewer->setProjection(name));
 }
 
+// What is under the pointer.
+EMSCRIPTEN_KEEPALIVE const char* stipple_pick(double x, double y, int radius) {
+    return give(viewer->pick(x, y, radius));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_take_pick() {
+    return give(viewer->takePickJson());
+}
+
 // Frames.
 EMSCRIPTEN_KEEPALIVE int stipple_frame() {
     return viewer->frame() ? 1 : 0;

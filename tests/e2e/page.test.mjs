@@ -202,6 +202,69 @@ describe('the picture', () => {
     });
 });
 
+describe('picking', () => {
+    const size = { width: 640, height: 480 };
+
+    test('a pick finds the point that the native program finds, with the same values', async () => {
+        const { page } = await openTown(size);
+        await page.evaluate(() => window.stipple.setStyle({ sizePixels: 3 }));
+        await settle(page);
+        const camera = await page.evaluate(() => window.stipple.camera());
+        let equal = 0, found = 0;
+        const places = Array.from({ length: 16 }, (_, i) => ({ x: 130 + 97 * (i % 4) + i, y: 120 + 71 * Math.floor(i / 4) + i }));
+        for (const { x, y } of places) {
+            const picked = await page.evaluate(([a, b]) => window.stipple.pick(a, b), [x, y]);
+            const native = JSON.parse(
+                await stipple(
+                    'render', town, '--pick', `${x},${y}`, '--size', `${size.width}x${size.height}`,
+                    '--view', JSON.stringify(camera), '--style', '{"sizePixels": 3}',
+                ),
+            );
+            assert.equal(picked === null, native === null, `at ${x}, ${y}`);
+            if (!picked) continue;
+            found += 1;
+            // A browser's sub-pixel grid is coarser: an edge may fall on the other side of a pixel's centre.
+            if (picked.point.node !== native.point.node || picked.point.index !== native.point.index) continue;
+            equal += 1;
+            assert.deepEqual(picked.integers, native.integers);
+            assert.deepEqual(picked.position, native.position);
+            assert.deepEqual(picked.values, native.values);
+        }
+        report('picks', { places: places.length, found, equal });
+        assert.ok(found >= 8);
+        assert.ok(equal >= found - 1, `${equal} of ${found} are the native program's`);
+        await page.close();
+    });
+
+    test('a click shows the point and all it has, Escape closes it; a drag shows none', async () => {
+        const { page, complaints } = await openTown(size);
+        const panel = page.getByRole('complementary', { name: 'Point' });
+        await page.mouse.move(320, 240);
+        await page.mouse.down();
+        await page.mouse.move(340, 250, { steps: 4 });
+        await page.mouse.up();
+        await page.waitForTimeout(300);
+        assert.equal(await panel.count(), 0);
+        await settle(page);
+
+        await page.locator('canvas').click({ position: { x: 380, y: 260 } });
+        await panel.waitFor();
+        const picked = await page.evaluate(() => window.stipple.pick(380, 260));
+        assert.equal(await panel.locator('[data-value=X]').textContent(), String(picked.position[0]));
+        assert.equal(
+            await panel.locator('[data-value=Classification]').textContent(),
+            String(picked.values.Classification),
+        );
+        assert.equal(picked.cloudName.length > 0, true);
+        await keepScreenshot(page, 'picked');
+        await page.locator('canvas').press('Escape');
+        await panel.waitFor({ state: 'detached' });
+        assert.equal(await page.evaluate(() => window.stipple.pick(2, 2, 0)), null);
+        assert.deepEqual(complaints, []);
+        await page.close();
+    });
+});
+
 describe('moving', () => {
     const camera = (page) => page.evaluate(() => window.stipple.camera());
 

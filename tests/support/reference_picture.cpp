@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
 
 namespace stipple::test {
@@ -77,6 +78,78 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
         canvas.blend(marks, style);
     canvas.doubt(marks, style, slack);
     return {canvas.finish(style), canvas.doubtful(style)};
+}
+
+ReferencePoints referencePoints(const reference::View& view, const Style& style,
+                                std::span<const reference::Points> clouds) {
+    std::vector<reference::Mark> marks;
+    for (const reference::Points& cloud : clouds)
+        appendMarks(view, style, cloud, marks);
+    for (reference::Mark& mark : marks) {
+        auto name = static_cast<std::uint32_t>(mark.order) + 1;
+        mark.colour = {static_cast<float>(name & 255), static_cast<float>(name >> 8 & 255),
+                       static_cast<float>(name >> 16)};
+    }
+    Style plain = style;
+    plain.edl.enabled = false;
+    plain.splats.enabled = false;
+    plain.background = {0, 0, 0};
+    reference::Canvas canvas(view.width, view.height);
+    canvas.draw(marks, style.shape);
+    canvas.doubt(marks, plain, {});
+    DepthImage picture = canvas.finish(plain);
+    ReferencePoints points{view.width, view.height, {}, picture.distances, canvas.doubtful(plain)};
+    for (std::size_t at = 0; at < points.distances.size(); ++at) {
+        const std::uint8_t* c = picture.image.rgba.data() + 4 * at;
+        points.order.push_back(c[0] | std::uint32_t{c[1]} << 8 | std::uint32_t{c[2]} << 16);
+    }
+    return points;
+}
+
+ReferencePoints referencePoints(const std::vector<TestNode>& nodes, const TestView& view,
+                                const Style& style) {
+    std::vector<std::unique_ptr<NodeCloud>> clouds;
+    std::vector<reference::Points> points;
+    std::uint64_t order = 0;
+    for (const TestNode& node : nodes) {
+        clouds.push_back(std::make_unique<NodeCloud>(node));
+        clouds.back()->points.firstOrder = order;
+        order += node.points.size();
+        points.push_back(clouds.back()->points);
+    }
+    return referencePoints(viewOf(view), style, points);
+}
+
+ExpectedPick expectedPick(const ReferencePoints& points, const PickRequest& request) {
+    struct Best {
+        double away = HUGE_VAL, distance = HUGE_VAL;
+        std::uint32_t order = 0;
+    } best;
+    double firstDoubt = HUGE_VAL;
+    bool isTie = false;
+    for (int row = 0; row < points.height; ++row)
+        for (int column = 0; column < points.width; ++column) {
+            double away = std::hypot(column + 0.5 - request.x, row + 0.5 - request.y);
+            bool own = std::floor(request.x) == column && std::floor(request.y) == row;
+            auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(points.width) +
+                      static_cast<std::size_t>(column);
+            if (away > request.radius && !own)
+                continue;
+            if (points.unsure[at])
+                firstDoubt = std::min(firstDoubt, away);
+            if (points.order[at] == 0 || away > best.away)
+                continue;
+            double distance = double{points.distances[at]};
+            if (away == best.away) { // the nearer in depth
+                isTie = isTie || std::abs(distance - best.distance) <= 1e-5 * distance;
+                if (distance >= best.distance)
+                    continue;
+            } else {
+                isTie = false;
+            }
+            best = {away, distance, points.order[at]};
+        }
+    return {best.order, !isTie && firstDoubt > best.away};
 }
 
 std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, int toleranceLevels) {

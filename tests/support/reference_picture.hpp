@@ -4,8 +4,10 @@
 
 #include "client/measure/pixel_error.hpp"
 #include "client/reference/canvas.hpp"
+#include "client/render/pick.hpp"
 #include "tests/support/test_plan.hpp"
 
+#include <span>
 #include <vector>
 
 namespace stipple::test {
@@ -17,6 +19,26 @@ struct ReferencePicture {
 
 ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const TestView& view,
                                   const Style& style, int samples = 1, const reference::Slack& slack = {});
+
+// Which point each pixel shows, by the reference renderer.
+struct ReferencePoints {
+    int width = 0, height = 0;
+    std::vector<std::uint32_t> order; // Points::firstOrder + index, plus 1; 0: none. Rows from the top
+    std::vector<float> distances;
+    std::vector<bool> unsure;
+};
+// Orders must stay under 2^24 - 1. `style`: sizes and shape.
+ReferencePoints referencePoints(const reference::View& view, const Style& style,
+                                std::span<const reference::Points> clouds);
+ReferencePoints referencePoints(const std::vector<TestNode>& nodes, const TestView& view, const Style& style);
+
+// What a pick is expected to answer, by looking at every pixel within the radius: an order as above, 0 for no
+// point; and whether the reference is sure of it.
+struct ExpectedPick {
+    std::uint32_t order = 0;
+    bool isSure = true;
+};
+ExpectedPick expectedPick(const ReferencePoints& points, const PickRequest& request);
 
 // Differing pixels that `reference` is sure of.
 std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, int toleranceLevels);

@@ -3,13 +3,17 @@ import type { Model } from './model.ts';
 /** Pixels of one press of an arrow key. */
 const keyStep = 40;
 const keyZoom = 0.8;
+/** A pointer that moves no farther, in pixels, between down and up is a click. */
+const clickSlop = 3;
 
 /**
  * Pointer, wheel, touch and keys on the canvas become steps of the camera. Left drag or one finger orbits; right,
- * middle or shift drag and two fingers pan; wheel and pinch zoom to the pointer.
+ * middle or shift drag and two fingers pan; wheel and pinch zoom to the pointer; a click asks about the point there, Escape lets go of it.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     const fingers = new Map<number, { x: number; y: number }>();
+    /** Where the one pointer went down; none once it has moved, or another came. */
+    let pressed: { x: number; y: number } | undefined;
 
     const pinch = (): { x: number; y: number; spread: number } => {
         const [a, b] = [...fingers.values()] as [{ x: number; y: number }, { x: number; y: number }];
@@ -24,6 +28,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         canvas.setPointerCapture(event.pointerId);
         canvas.focus({ preventScroll: true });
         fingers.set(event.pointerId, place(event));
+        pressed = fingers.size === 1 && event.button === 0 ? place(event) : undefined;
         event.preventDefault();
     });
 
@@ -31,6 +36,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         const from = fingers.get(event.pointerId);
         if (!from) return;
         const to = place(event);
+        if (pressed && Math.hypot(to.x - pressed.x, to.y - pressed.y) > clickSlop) pressed = undefined;
         if (fingers.size === 2) {
             const before = pinch();
             fingers.set(event.pointerId, to);
@@ -48,7 +54,11 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     const lift = (event: PointerEvent): void => {
         fingers.delete(event.pointerId);
     };
-    canvas.addEventListener('pointerup', lift);
+    canvas.addEventListener('pointerup', (event) => {
+        lift(event);
+        if (pressed) void model.showPoint(pressed.x, pressed.y);
+        pressed = undefined;
+    });
     canvas.addEventListener('pointercancel', lift);
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 
@@ -82,6 +92,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             '2': () => model.showView('front'),
             '3': () => model.showView('iso'),
             Home: () => model.showView('iso'),
+            Escape: () => model.forgetPoint(),
         };
         const action = actions[event.key];
         if (!action) return;

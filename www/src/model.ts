@@ -1,5 +1,5 @@
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
-import type { CloudState, Counters, Limits, NamedView, Projection, Style } from './wasm/values.ts';
+import type { CloudState, Counters, Limits, NamedView, PickedPoint, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /** What failed is tried again after a pause, and no arrival tells when that is over: so look now and then. */
@@ -19,10 +19,13 @@ export class Model extends EventTarget {
     limits!: Limits;
     projection: Projection = 'perspective';
     counters!: Counters;
+    /** The point that was asked about last. */
+    picked: PickedPoint | null = null;
     /** Sentences for the person, newest last. */
     notices: string[] = [];
 
     private viewer!: Viewer;
+    private lastQuestion = 0;
     private frameIsDue = false;
     private reportIsDue = false;
     private lookAgainTimer: ReturnType<typeof setTimeout> | undefined;
@@ -121,6 +124,37 @@ export class Model extends EventTarget {
     zoom(factor: number, x: number, y: number): void {
         this.viewer.zoom(factor, x * this.pixelRatio, y * this.pixelRatio);
         this.wake();
+    }
+
+    // What is under the pointer
+
+    /** The point shown at a place of the canvas (CSS pixels), with all its attributes; null if there is none. */
+    async pick(x: number, y: number, radius = 8): Promise<PickedPoint | null> {
+        const ratio = this.pixelRatio;
+        const question = ++this.lastQuestion;
+        this.viewer.pick(x * ratio, y * ratio, Math.round(radius * ratio));
+        for (;;) {
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+            if (question !== this.lastQuestion) return null; // another took its place
+            const answer = this.viewer.takePick();
+            if (answer.error !== undefined) throw new Error(answer.error);
+            if (!answer.pending) return answer.point ?? null;
+            this.wake(); // what has to be read is asked for between frames
+        }
+    }
+
+    /** Shows what is known of the point there, or that there is none. */
+    async showPoint(x: number, y: number): Promise<void> {
+        try {
+            this.picked = await this.pick(x, y);
+        } catch (error) {
+            this.notify(messageOf(error));
+        }
+        this.changed();
+    }
+    forgetPoint(): void {
+        this.picked = null;
+        this.changed();
     }
 
     // Frames

@@ -1,5 +1,5 @@
 import type { Model } from './model.ts';
-import type { Counters } from './wasm/values.ts';
+import type { Counters, PickedPoint } from './wasm/values.ts';
 
 /**
  * `window.stipple`: the page for programs. Tests and measurements in a browser use it; so may whoever embeds the
@@ -14,6 +14,8 @@ export interface TestHook {
     camera(): object;
     setStyle(style: object): void;
     setLimits(limits: object): void;
+    /** The point shown at a place of the canvas, in CSS pixels; null if there is none. */
+    pick(x: number, y: number, radius?: number): Promise<PickedPoint | null>;
     /** Draws once more and reads the canvas back: rows from the top, four bytes a pixel, as base64. */
     readPixels(): { width: number; height: number; base64: string };
 }
@@ -32,6 +34,7 @@ export function installTestHook(model: Model): void {
         camera: () => model.readCamera(),
         setStyle: (style) => model.changeStyle(style),
         setLimits: (limits) => model.changeLimits(limits),
+        pick: (x, y, radius) => model.pick(x, y, radius),
         readPixels: () => {
             const { width, height, rgba } = model.readPixels();
             let binary = '';

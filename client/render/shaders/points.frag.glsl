@@ -1,6 +1,7 @@
 // Colours the pixels of a point; round points drop those whose centre lies outside the circle, except the
 // pixel that holds the point (client/render/raster_setup.hpp, "Coverage").
 // BLEND: adds the point's weighted colour where it lies within its blend depth of the nearest ("Splats").
+// IDENTITY: which point it is instead of its colour, in a window of the picture (client/render/pick.hpp).
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -15,7 +16,22 @@ uniform sampler2D uNearest; // depth of the nearest points
 uniform int uHardness;
 #endif
 
+#ifdef IDENTITY
+flat in uvec2 vPoint;
+uniform uint uNode;
+uniform ivec2 uWindow;                   // lower left pixel
+layout(location = 0) out uvec4 outPoint; // node, point, depth step, 1
+#else
 layout(location = 0) out vec4 outColour;
+#endif
+
+vec2 pixelCentre() {
+#ifdef IDENTITY
+    return gl_FragCoord.xy + vec2(uWindow);
+#else
+    return gl_FragCoord.xy;
+#endif
+}
 
 #ifdef BLEND
 // In 2^-16.
@@ -30,7 +46,7 @@ float weightAt(int away) {
 
 void main() {
 #ifdef CENTRED
-    ivec2 apart = abs(ivec2(gl_FragCoord.xy * 256.0) - vDisc.xy);
+    ivec2 apart = abs(ivec2(pixelCentre() * 256.0) - vDisc.xy);
     int away = apart.x * apart.x + apart.y * apart.y;
 #ifdef CIRCLE
     bool holdsPoint = max(apart.x, apart.y) < 128;
@@ -38,7 +54,9 @@ void main() {
         discard;
 #endif
 #endif
-#ifdef BLEND
+#ifdef IDENTITY
+    outPoint = uvec4(uNode, vPoint, 1u);
+#elif defined(BLEND)
     uint nearest = uint(texelFetch(uNearest, ivec2(gl_FragCoord.xy), 0).r * 16777216.0);
     if (vBlended > nearest)
         discard;

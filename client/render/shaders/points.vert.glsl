@@ -1,7 +1,8 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
 // Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE (with
-// the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there.
+// the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there;
+// IDENTITY where it is asked which point a pixel shows.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -46,6 +47,9 @@ uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
 
 #ifdef CAPTURE_LEVELS
 flat out int vLevels;
+#endif
+#ifdef IDENTITY
+flat out uvec2 vPoint; // index in its node, depth step
 #endif
 
 float along(vec3 row, vec3 r) {
@@ -94,6 +98,9 @@ void main() {
 
     float d = along(uRowD, r);
     vColour = colourOf(r);
+#ifdef IDENTITY
+    vPoint = uvec2(0u);
+#endif
 #ifdef ADAPTIVE
     int levels = levelsBelow(p);
 #ifdef CAPTURE_LEVELS
@@ -135,5 +142,9 @@ void main() {
 #endif
     if (uContinuous)
         size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);
-    placePoint(cell, floor(size64), (floatBitsToUint(d) - uNearBits) >> uDepthShift);
+    uint step = (floatBitsToUint(d) - uNearBits) >> uDepthShift;
+#ifdef IDENTITY
+    vPoint = uvec2(uint(gl_VertexID), step);
+#endif
+    placePoint(cell, floor(size64), step);
 }

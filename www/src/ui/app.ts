@@ -1,6 +1,7 @@
 import './cloud_list.ts';
 import './counters_panel.ts';
 import './look_panel.ts';
+import './point_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
 
@@ -81,6 +82,13 @@ export class App extends ModelElement {
                 grid-column: 3;
                 grid-row: 1;
                 width: 250px;
+            }
+            .point {
+                grid-column: 2;
+                grid-row: 1;
+                justify-self: end;
+                align-self: end;
+                width: 270px;
             }
             .status {
                 grid-column: 2 / 4;
@@ -178,6 +186,12 @@ export class App extends ModelElement {
                     justify-self: end;
                     max-height: 40vh;
                 }
+                .point {
+                    grid-column: 1;
+                    grid-row: 1;
+                    justify-self: start;
+                    max-height: 40vh;
+                }
                 .status {
                     grid-column: 1;
                     grid-row: 2;
@@ -203,6 +217,11 @@ export class App extends ModelElement {
             ${this.countersAreOpen
                 ? html`<aside class="panel counters" aria-label="Counters">
                       <stipple-counters .model=${this.model}></stipple-counters>
+                  </aside>`
+                : ''}
+            ${this.model.picked
+                ? html`<aside class="panel point" aria-label="Point" aria-live="polite">
+                      <stipple-point .model=${this.model}></stipple-point>
                   </aside>`
                 : ''}
             ${this.renderStatus()}

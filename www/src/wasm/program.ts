@@ -40,6 +40,8 @@ export interface ViewerProgram extends Program {
     _stipple_zoom(factor: number, x: number, y: number): void;
     _stipple_show_view(name: Address): Address;
     _stipple_set_projection(name: Address): Address;
+    _stipple_pick(x: number, y: number, radius: number): Address;
+    _stipple_take_pick(): Address;
     _stipple_frame(): number;
     _stipple_redraw(): void;
     _stipple_settled(): number;

@@ -67,6 +67,24 @@ export interface CloudState {
     attributes?: string[];
 }
 
+/** A point of a cloud, exactly as its file has it. */
+export interface PickedPoint {
+    integers: Vector;
+    position: Vector;
+    values: Record<string, number | number[]>;
+    point: { cloud: number; node: string; index: number };
+    pixelsAway: number;
+    distance: number;
+    cloudName: string;
+    crs: string;
+}
+
+export interface PickAnswer {
+    pending: boolean;
+    point?: PickedPoint | null;
+    error?: string;
+}
+
 /** FrameCounters and SessionCounters of client/core/counters.hpp. */
 export interface Counters {
     frame: Record<string, number | boolean>;

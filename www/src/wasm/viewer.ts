@@ -4,7 +4,7 @@ import viewerUrl from '@programs/stipple_viewer.wasm?url';
 import type { Heap } from './heap.ts';
 import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
-import type { Camera, CloudState, Counters, Limits, NamedView, Projection, Style } from './values.ts';
+import type { Camera, CloudState, Counters, Limits, NamedView, PickAnswer, Projection, Style } from './values.ts';
 
 type Partially<T> = { [K in keyof T]?: T[K] extends object ? Partial<T[K]> : T[K] };
 export type StyleChange = Partially<Style>;
@@ -85,6 +85,14 @@ export class Viewer {
     }
     setProjection(projection: Projection): void {
         this.heap.lendTexts([projection], (at) => this.expect(this.program._stipple_set_projection(at!)));
+    }
+
+    /** Asks what is under the pointer, in pixels of the canvas; takePick() has the answer, frames later. */
+    pick(x: number, y: number, radius: number): void {
+        this.expect(this.program._stipple_pick(x, y, radius));
+    }
+    takePick(): PickAnswer {
+        return this.json<PickAnswer>(this.program._stipple_take_pick());
     }
 
     /** True if it drew. */

@@ -65,6 +65,16 @@ int render(std::vector<std::string> words) {
 
 } // namespace
 
+TEST_CASE("render says which point is at a place of the picture", "[render]") {
+    Scratch scratch;
+    CHECK(render({cloudFile(), "--pick", "640,360"}) == cli::success);
+    CHECK(render({cloudFile(), "--pick", "2,2", "--size", "100x100"}) == cli::success); // nothing there
+    for (const char* place : {"", "640", "640,", "a,b", "1,2,3", "nan,2", "1,inf"})
+        CHECK(render({cloudFile(), "--pick", place}) == cli::usageError);
+    CHECK(render({cloudFile(), "--pick", "1,2", "-o", scratch.file("a.png")}) == cli::usageError);
+    CHECK(scratch.count() == 0);
+}
+
 TEST_CASE("render writes a picture of the size that was asked for", "[render]") {
     Scratch scratch;
     std::string output = scratch.file("a.png");
