@@ -20,6 +20,8 @@ constexpr const char* table = R"json([
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}},
 {"name": "all-nodes", "about": "default, without the limit on the size of nodes", "sweep": true,
  "limits": {"minNodePixels": 0}},
+{"name": "weighted", "about": "default, the picture's middle and what is near first (weights down to 0.5)", "sweep": true,
+ "limits": {"leastCentreWeight": 0.5, "leastDepthWeight": 0.5}},
 {"name": "continuous", "about": "default, with continuous detail", "sweep": true,
  "style": {"detail": {"mode": "continuous"}}},
 {"name": "continuous-spacing", "about": "continuous detail, circles as wide as the target spacing, no lighting", "sweep": true,

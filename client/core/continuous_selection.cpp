@@ -1,10 +1,10 @@
 #include "client/core/continuous_selection.hpp"
 
 #include "client/core/continuous_detail.hpp"
+#include "client/core/expected_points.hpp"
 #include "client/core/selection_builder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <queue>
 #include <utility>
@@ -22,29 +22,33 @@ constexpr double coarsestPixels = 32;
 // their spacing, which cost a rasterizer less; so many times the budget may be sent to it in all.
 constexpr double sentPerShown = 4;
 
-// Where a node's points are taken to be when it is counted how many show: the middles of so many cells a
-// side.
-constexpr int cellsAcross = 3;
-constexpr int cells = cellsAcross * cellsAcross * cellsAcross;
-
 constexpr std::size_t noParent = ~std::size_t{0};
 
+// A node that is offered or visited.
 struct Candidate {
     double reach; // reachPixels() where the node is nearest
     double pixel; // world units of a pixel there
     RankDensity density;
     std::uint32_t cloud, node;
     const HierarchyNode* known;
-    std::size_t parent;                // place among the visited
-    std::array<float, cells> pixels{}; // world units of a pixel in each cell; infinite out of the picture
+    std::size_t parent; // place among the visited
+    Sight sight;
+};
+
+// What the queue holds of it: little, since it is moved often.
+struct Place {
+    double reach;
+    std::uint32_t cloud;
+    std::uint32_t candidate; // index
+    const NodeKey* key;
 
     // std::priority_queue takes the largest.
-    bool operator<(const Candidate& other) const {
+    bool operator<(const Place& other) const {
         if (reach != other.reach)
             return reach < other.reach;
         if (cloud != other.cloud)
             return cloud > other.cloud;
-        return known->entry.key > other.known->entry.key;
+        return *key > *other.key;
     }
 };
 
@@ -54,7 +58,8 @@ struct Total {
 
 class ContinuousSelector {
   public:
-    explicit ContinuousSelector(const SelectionInput& input) : input_(input), builder_(input) {}
+    explicit ContinuousSelector(const SelectionInput& input)
+        : input_(input), builder_(input), expected_(input.view, input.height) {}
 
     Selection run() {
         offerRoots();
@@ -70,28 +75,21 @@ class ContinuousSelector {
     FrameCounters& counters() { return builder_.counters(); }
 
     // World units of a pixel where the box is nearest.
-    double pixelOf(const BoxD& box) const {
+    double pixelOf(const BoxD& box, Sight sight) const {
         bool perspective = input_.view.projection == Projection::perspective;
-        double distance = perspective ? builder_.frustum().nearestDistance(box) : 0;
+        double distance = perspective ? builder_.frustum().nearestDistance(box, sight) : 0;
         return pixelWorld(input_.view, input_.height, std::max(distance, input_.view.near));
     }
     static std::uint32_t prefixOf(const Candidate& visited, double target) {
         return detailPrefix(visited.density, visited.known->entry.pointCount, target * visited.pixel);
     }
-    // Of `points` in the node's prefix, those that are likely to be in the picture and far enough apart.
-    static double shownOf(const Candidate& visited, double target, std::uint32_t points) {
-        double shown = 0;
-        for (float pixel : visited.pixels)
-            if (std::isfinite(pixel))
-                shown += std::min(
-                    points, detailPrefix(visited.density, visited.known->entry.pointCount, target * pixel));
-        return shown / cells;
+    // The largest part that a budget has of the total: more than 1 exceeds it.
+    double fillOf(Total total) const {
+        double budget = std::max<double>(static_cast<double>(input_.pointBudget), 1e-9);
+        return std::max({total.shown / budget, total.sent / (sentPerShown * budget),
+                         total.bytes / std::max<double>(static_cast<double>(input_.byteBudget), 1e-9)});
     }
-    bool exceeds(Total total) const {
-        auto budget = static_cast<double>(input_.pointBudget);
-        return total.shown > budget || total.sent > sentPerShown * budget ||
-               total.bytes > static_cast<double>(input_.byteBudget);
-    }
+    bool exceeds(Total total) const { return fillOf(total) > 1; }
     void send(Total& total, std::uint32_t cloud, std::uint32_t points) const {
         total.sent += points;
         total.bytes += static_cast<double>(points) * std::max(1u, input_.clouds[cloud].bytesPerPoint);
@@ -101,16 +99,17 @@ class ContinuousSelector {
         for (std::size_t c = 0; c < input_.clouds.size(); ++c)
             if (const Hierarchy* hierarchy = input_.clouds[c].hierarchy; hierarchy && hierarchy->size() > 0) {
                 counters().nodesKnown += hierarchy->size();
-                offer(static_cast<std::uint32_t>(c), 0, noParent);
+                offer(static_cast<std::uint32_t>(c), 0, noParent, Sight::crossing);
             }
     }
 
-    void offer(std::uint32_t cloud, std::uint32_t node, std::size_t parent) {
+    void offer(std::uint32_t cloud, std::uint32_t node, std::size_t parent, Sight parentSight) {
         const HierarchyNode& known = input_.clouds[cloud].hierarchy->node(node);
-        if (!builder_.inView(known))
+        Sight sight = builder_.sightOf(known, parentSight);
+        if (sight == Sight::outside)
             return;
         const NodeKey& key = known.entry.key;
-        double pixel = pixelOf(known.geometry.box);
+        double pixel = pixelOf(known.geometry.box, sight);
         RankDensity density =
             rankDensity(key.level, input_.clouds[cloud].hierarchy->spacingOf(key), known.entry.pointCount);
         double reach = reachPixels(density, pixel);
@@ -119,13 +118,14 @@ class ContinuousSelector {
             return;
         }
         counters().pointsConsidered += known.entry.pointCount;
-        queue_.push({reach, pixel, density, cloud, node, &known, parent});
+        queue_.push({reach, cloud, static_cast<std::uint32_t>(offered_.size()), &key});
+        offered_.push_back({reach, pixel, density, cloud, node, &known, parent, sight});
     }
 
     void visit() {
         Total whole; // what shows at any target below the next reach
         while (!queue_.empty()) {
-            Candidate next = queue_.top();
+            Place next = queue_.top();
             for (; !notWhole_.empty() && notWhole_.top().first >= next.reach; notWhole_.pop())
                 send(whole, visited_[notWhole_.top().second].cloud,
                      visited_[notWhole_.top().second].known->entry.pointCount);
@@ -133,12 +133,14 @@ class ContinuousSelector {
                 return;
             queue_.pop();
             ++counters().nodesVisited;
-            notWhole_.emplace(wholeAt(next), visited_.size());
-            visited_.push_back(next);
-            locate(visited_.back());
-            for (std::int32_t child : next.known->children)
+            visited_.push_back(offered_[next.candidate]);
+            const Candidate visited = visited_.back();
+            std::size_t place = visited_.size() - 1;
+            notWhole_.emplace(wholeAt(visited), place);
+            expected_.add(visited.known->geometry.box, visited.density, visited.known->entry.pointCount);
+            for (std::int32_t child : visited.known->children)
                 if (child >= 0)
-                    offer(next.cloud, static_cast<std::uint32_t>(child), visited_.size() - 1);
+                    offer(visited.cloud, static_cast<std::uint32_t>(child), place, visited.sight);
         }
     }
 
@@ -149,55 +151,45 @@ class ContinuousSelector {
         return reachPixels(last, candidate.pixel);
     }
 
-    void locate(Candidate& visited) const {
-        const BoxD& box = visited.known->geometry.box;
-        Vec3d step = (box.max - box.min) * (1.0 / cellsAcross);
-        for (int cell = 0; cell < cells; ++cell) {
-            Vec3d place{cell % cellsAcross + 0.5, cell / cellsAcross % cellsAcross + 0.5,
-                        cell / (cellsAcross * cellsAcross) + 0.5};
-            Vec3d at =
-                box.min - input_.view.eye + Vec3d{place.x * step.x, place.y * step.y, place.z * step.z};
-            double pixel = inPicture(at)
-                               ? pixelWorld(input_.view, input_.height, dot(at, input_.view.forward))
-                               : HUGE_VAL;
-            visited.pixels[static_cast<std::size_t>(cell)] = static_cast<float>(pixel);
-        }
-    }
-    // `at`: from the eye.
-    bool inPicture(Vec3d at) const {
-        const ViewTransform& view = input_.view;
-        double depth = dot(at, view.forward);
-        double half = view.projection == Projection::perspective ? view.tanHalfFovY * depth : view.halfHeight;
-        return depth >= view.near && std::abs(dot(at, view.right)) <= half * view.aspect &&
-               std::abs(dot(at, view.up)) <= half;
-    }
-
     Total totalAt(double target) const {
         Total total;
-        for (const Candidate& visited : visited_) {
-            std::uint32_t points = prefixOf(visited, target);
-            send(total, visited.cloud, points);
-            total.shown += shownOf(visited, target, points);
-        }
+        for (const Candidate& visited : visited_)
+            send(total, visited.cloud, prefixOf(visited, target));
+        total.shown = expected_.shownAt(target);
         return total;
     }
 
     // The least target, from the wanted one up, within both budgets, to a part in a thousand. Nodes that were
-    // not visited would not show there.
+    // not visited would not show there. What a budget holds is nearly linear in 1 / target²: false position
+    // (Dowell, Jarratt 1971, "Illinois") finds it in a few steps.
     double affordableTarget() const {
-        double low = input_.detailPixels;
+        double target = input_.detailPixels;
         if (!queue_.empty())
-            low = std::max(low, queue_.top().reach);
-        if (!exceeds(totalAt(low)))
-            return low;
-        double high = std::max(low, coarsestPixels);
-        if (exceeds(totalAt(high)))
-            return high;
-        while (high > 1.001 * low) {
-            double middle = std::sqrt(low * high);
-            (exceeds(totalAt(middle)) ? low : high) = middle;
+            target = std::max(target, queue_.top().reach);
+        double over = fillOf(totalAt(target)) - 1;
+        if (over <= 0)
+            return target;
+        double coarsest = std::max(target, coarsestPixels), under = fillOf(totalAt(coarsest)) - 1;
+        if (under > 0)
+            return coarsest;
+        auto density = [](double pixels) { return 1 / (pixels * pixels); };
+        double most = density(target), least = density(coarsest); // over and within the budgets
+        double overWeight = over, underWeight = under;
+        bool wasOver = false, isFirst = true;
+        while (most > 1.002 * least) {
+            double next = least - underWeight * (most - least) / (overWeight - underWeight);
+            // Off the ends, so that both come nearer.
+            next = std::clamp(next, 1.0005 * least, most / 1.0005);
+            double fill = fillOf(totalAt(1 / std::sqrt(next))) - 1;
+            bool isOver = fill > 0;
+            (isOver ? most : least) = next;
+            (isOver ? overWeight : underWeight) = fill;
+            if (!isFirst && isOver == wasOver)
+                (isOver ? underWeight : overWeight) /= 2;
+            wasOver = isOver;
+            isFirst = false;
         }
-        return high;
+        return 1 / std::sqrt(least);
     }
 
     void emit(double target) {
@@ -206,7 +198,7 @@ class ContinuousSelector {
             const Candidate& node = visited_[i];
             bool ancestorsDrawn = node.parent == noParent || childrenMayShow[node.parent];
             std::uint32_t prefix = prefixOf(node, target), points = affordable(node.cloud, prefix);
-            counters().pointsExpected += static_cast<std::uint64_t>(shownOf(node, target, points));
+            counters().pointsExpected += static_cast<std::uint64_t>(expected_.shownOf(i, target, points));
             counters().pointsTooFine += node.known->entry.pointCount - prefix;
             counters().nodesOverBudget += points < prefix;
             childrenMayShow[i] = ancestorsDrawn;
@@ -233,14 +225,17 @@ class ContinuousSelector {
     double childReach(const Candidate& parent, const NodeGeometry& child) const {
         const NodeKey& key = parent.known->entry.key;
         double spacing = input_.clouds[parent.cloud].hierarchy->spacingOf(key) / 2;
-        return reachPixels(rankDensity(key.level + 1, spacing, 1u << 30), pixelOf(child.box));
+        return reachPixels(rankDensity(key.level + 1, spacing, 1u << 30),
+                           pixelOf(child.box, Sight::crossing));
     }
 
     const SelectionInput& input_;
     SelectionBuilder builder_;
-    std::priority_queue<Candidate> queue_;
+    std::priority_queue<Place> queue_;
+    std::vector<Candidate> offered_;
     Total taken_;
     std::vector<Candidate> visited_;                               // parents before children
+    ExpectedPoints expected_;                                      // of the visited
     std::priority_queue<std::pair<double, std::size_t>> notWhole_; // wholeAt(), place among the visited
 };
 

@@ -49,48 +49,72 @@ Frustum::Frustum(const ViewTransform& view) : view_(view) {
     const std::array<Vec3d, 3> edges{Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}};
     if (view.projection == Projection::orthographic) {
         // In the plane of the picture: its own two sides, and the normal of each projected box edge.
-        axes_ = {view.right, view.up};
+        addAxis(view.right);
+        addAxis(view.up);
         for (Vec3d edge : edges)
-            axes_.push_back(cross(edge, view.forward));
+            addAxis(cross(edge, view.forward));
         return;
     }
     double x = view.tanHalfFovY * view.aspect, y = view.tanHalfFovY;
     for (std::size_t i = 0; i < 4; ++i)
         rays_[i] = normalized(view.forward + view.right * (i & 1 ? x : -x) + view.up * (i & 2 ? y : -y));
     // Normals of the pyramid's sides and of the box's, and every pair of an edge of each.
-    axes_ = {view.forward * x - view.right, view.forward * x + view.right, view.forward * y - view.up,
-             view.forward * y + view.up};
-    axes_.insert(axes_.end(), edges.begin(), edges.end());
+    for (Vec3d side : {view.forward * x - view.right, view.forward * x + view.right,
+                       view.forward * y - view.up, view.forward * y + view.up})
+        addAxis(side);
+    for (Vec3d edge : edges)
+        addAxis(edge);
     for (Vec3d edge : edges)
         for (Vec3d ray : rays_)
-            axes_.push_back(cross(edge, ray));
+            addAxis(cross(edge, ray));
 }
 
-bool Frustum::intersects(const BoxD& box) const {
+void Frustum::addAxis(Vec3d direction) {
+    Axis axis{direction, length(direction), 0, 0};
+    if (view_.projection == Projection::orthographic) {
+        axis.high = std::abs(dot(direction, view_.right)) * view_.halfHeight * view_.aspect +
+                    std::abs(dot(direction, view_.up)) * view_.halfHeight;
+        axis.low = -axis.high;
+    } else {
+        // The pyramid covers [0, ∞), (-∞, 0] or everything along the axis, as its rays point.
+        for (Vec3d ray : rays_) {
+            double along = dot(direction, ray);
+            if (along > slack * axis.length)
+                axis.high = HUGE_VAL;
+            if (along < -slack * axis.length)
+                axis.low = -HUGE_VAL;
+        }
+        if (axis.high > 0 && axis.low < 0)
+            return; // tells nothing
+    }
+    axes_.push_back(axis);
+}
+
+Sight Frustum::sightOf(const BoxD& box) const {
     if (box.empty())
-        return false;
+        return Sight::outside;
     Vec3d half = (box.max - box.min) * 0.5;
     Vec3d centre = (box.min - view_.eye) + half;
-    for (Vec3d axis : axes_)
-        if (separates(axis, centre, half))
-            return false;
-    return true;
+    double away = length(centre);
+    bool isPerspective = view_.projection == Projection::perspective;
+    std::size_t bounds = isPerspective ? sides : sides / 2, inside = 0;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const Axis& axis = axes_[i];
+        double middle = dot(axis.direction, centre);
+        double reach = std::abs(axis.direction.x) * half.x + std::abs(axis.direction.y) * half.y +
+                       std::abs(axis.direction.z) * half.z;
+        double tolerance = slack * axis.length * (away + reach);
+        if (middle + reach < axis.low - tolerance || middle - reach > axis.high + tolerance)
+            return Sight::outside;
+        inside +=
+            i < bounds && middle - reach > axis.low + tolerance && middle + reach < axis.high - tolerance;
+        if (inside == bounds)
+            return Sight::inside;
+    }
+    return Sight::crossing;
 }
 
-double Frustum::nearestDistance(const BoxD& box) const {
-    if (box.contains(view_.eye))
-        return 0;
-    Vec3d low = box.min - view_.eye, high = box.max - view_.eye;
-    double nearest = HUGE_VAL;
-    for (int face = 0; face < 6; ++face) {
-        Polygon part = faceOf(low, high, face / 2, face % 2);
-        for (std::size_t side = 0; side < 4 && part.count > 0; ++side)
-            part = clipped(part, axes_[side]);
-        for (std::size_t i = 0; i < part.count; ++i)
-            nearest = std::min(nearest, dot(part.corners[i], view_.forward));
-    }
-    if (nearest < HUGE_VAL)
-        return std::max(nearest, 0.0);
+double Frustum::ownNearest(Vec3d low, Vec3d high) const {
     Vec3d half = (high - low) * 0.5;
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis)
@@ -98,25 +122,21 @@ double Frustum::nearestDistance(const BoxD& box) const {
     return std::max(dot(low + half, view_.forward) - reach, 0.0);
 }
 
-bool Frustum::separates(Vec3d axis, Vec3d centre, Vec3d half) const {
-    double middle = dot(axis, centre);
-    double reach = std::abs(axis.x) * half.x + std::abs(axis.y) * half.y + std::abs(axis.z) * half.z;
-    double tolerance = slack * length(axis) * (length(centre) + reach);
-    if (view_.projection == Projection::orthographic) {
-        double picture = std::abs(dot(axis, view_.right)) * view_.halfHeight * view_.aspect +
-                         std::abs(dot(axis, view_.up)) * view_.halfHeight;
-        return std::abs(middle) > reach + picture + tolerance;
+double Frustum::nearestDistance(const BoxD& box, Sight sight) const {
+    Vec3d low = box.min - view_.eye, high = box.max - view_.eye;
+    if (sight == Sight::inside)
+        return ownNearest(low, high);
+    if (box.contains(view_.eye))
+        return 0;
+    double nearest = HUGE_VAL;
+    for (int face = 0; face < 6; ++face) {
+        Polygon part = faceOf(low, high, face / 2, face % 2);
+        for (std::size_t side = 0; side < sides && part.count > 0; ++side)
+            part = clipped(part, axes_[side].direction);
+        for (std::size_t i = 0; i < part.count; ++i)
+            nearest = std::min(nearest, dot(part.corners[i], view_.forward));
     }
-    // The pyramid covers [0, ∞), (-∞, 0] or everything along the axis, as its rays point.
-    bool anyAhead = false, anyBehind = false;
-    for (Vec3d ray : rays_) {
-        double along = dot(axis, ray);
-        anyAhead |= along > slack * length(axis);
-        anyBehind |= along < -slack * length(axis);
-    }
-    if (anyAhead && anyBehind)
-        return false;
-    return (!anyBehind && middle + reach < -tolerance) || (!anyAhead && middle - reach > tolerance);
+    return nearest < HUGE_VAL ? std::max(nearest, 0.0) : ownNearest(low, high);
 }
 
 double projectedPixels(const ViewTransform& view, int height, Vec3d centre, double radius) {

@@ -156,6 +156,8 @@ Result<SessionLimits> detail::readLimits(const json& value, const SessionLimits&
     FieldReader fields(value, "limits");
     fields.number("pointBudget", limits.pointBudget, 1, most);
     fields.number("minNodePixels", limits.minNodePixels, 0, 1e6);
+    fields.number("leastCentreWeight", limits.weights.leastCentre, 0, 1);
+    fields.number("leastDepthWeight", limits.weights.leastDepth, 0, 1);
     fields.number("cacheBytes", limits.cacheBytes, 1, most);
     fields.number("requestsInFlight", limits.requestsInFlight, 1, 1000);
     fields.number("bytesInFlight", limits.bytesInFlight, 1, most);
@@ -219,6 +221,8 @@ json toJson(const Style& style) {
 json toJson(const SessionLimits& limits) {
     return {{"pointBudget", limits.pointBudget},
             {"minNodePixels", limits.minNodePixels},
+            {"leastCentreWeight", limits.weights.leastCentre},
+            {"leastDepthWeight", limits.weights.leastDepth},
             {"cacheBytes", limits.cacheBytes},
             {"requestsInFlight", limits.requestsInFlight},
             {"bytesInFlight", limits.bytesInFlight},

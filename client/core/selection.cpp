@@ -11,15 +11,16 @@ namespace stipple {
 namespace {
 
 struct Candidate {
-    double pixels;
+    double priority, pixels;
     std::uint32_t cloud, node;
     const HierarchyNode* known;
     bool ancestorsDrawn; // all that hold points are here, or will never be
+    Sight sight;
 
     // std::priority_queue takes the largest.
     bool operator<(const Candidate& other) const {
-        if (pixels != other.pixels)
-            return pixels < other.pixels;
+        if (priority != other.priority)
+            return priority < other.priority;
         if (cloud != other.cloud)
             return cloud > other.cloud;
         return known->entry.key > other.known->entry.key;
@@ -34,7 +35,7 @@ class DiscreteSelector {
         for (std::size_t c = 0; c < input_.clouds.size(); ++c)
             if (const Hierarchy* hierarchy = input_.clouds[c].hierarchy; hierarchy && hierarchy->size() > 0) {
                 counters().nodesKnown += hierarchy->size();
-                offer(static_cast<std::uint32_t>(c), 0, true, true);
+                offer(static_cast<std::uint32_t>(c), 0, nullptr, true);
             }
         while (!queue_.empty() && !full_) {
             Candidate next = queue_.top();
@@ -48,16 +49,19 @@ class DiscreteSelector {
   private:
     FrameCounters& counters() { return builder_.counters(); }
 
-    void offer(std::uint32_t cloud, std::uint32_t node, bool isRoot, bool ancestorsDrawn) {
+    void offer(std::uint32_t cloud, std::uint32_t node, const Candidate* parent, bool ancestorsDrawn) {
         const HierarchyNode& known = input_.clouds[cloud].hierarchy->node(node);
-        if (!builder_.inView(known))
+        Sight sight = builder_.sightOf(known, parent ? parent->sight : Sight::crossing);
+        if (sight == Sight::outside)
             return;
         double pixels = builder_.pixelsOf(known.geometry);
-        if (pixels < input_.minNodePixels && !isRoot)
+        if (pixels < input_.minNodePixels && parent)
             ++counters().nodesTooSmall;
         else {
             counters().pointsConsidered += known.entry.pointCount;
-            queue_.push({pixels, cloud, node, &known, ancestorsDrawn});
+            const BoxD& box = known.geometry.box;
+            double weight = priorityWeight(input_.weights, input_.view, box.min + (box.max - box.min) * 0.5);
+            queue_.push({weight * pixels, pixels, cloud, node, &known, ancestorsDrawn, sight});
         }
     }
 
@@ -97,7 +101,7 @@ class DiscreteSelector {
         }
         for (std::int32_t child : parent.known->children)
             if (child >= 0)
-                offer(parent.cloud, static_cast<std::uint32_t>(child), false, drawn);
+                offer(parent.cloud, static_cast<std::uint32_t>(child), &parent, drawn);
     }
 
     const SelectionInput& input_;

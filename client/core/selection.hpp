@@ -1,9 +1,9 @@
 // Which nodes belong in the picture, which of them can be drawn now, and what has to be loaded: one pure
 // function of view, hierarchies, residency and limits.
 //
-// Best first by projected size, over all clouds together, a node before its children. It stops at the point
-// budget (the last node draws a prefix), at the bytes of the cache and at the smallest useful size. What is
-// selected does not depend on what is here, so loading never changes the aim.
+// Best first by projected size (times PriorityWeights), over all clouds together, a node before its children.
+// It stops at the point budget (the last node draws a prefix), at the bytes of the cache and at the smallest
+// useful size. What is selected does not depend on what is here, so loading never changes the aim.
 //
 // Levels add up: a node's points are those its level adds, and it is drawn together with all its ancestors. A
 // node that is not here is stood in for by them; its descendants wait for it, since they would show
@@ -21,6 +21,7 @@
 #include "client/core/counters.hpp"
 #include "client/core/frame_plan.hpp"
 #include "client/core/hierarchy.hpp"
+#include "client/core/priority_weights.hpp"
 
 #include <cstdint>
 #include <span>
@@ -46,6 +47,7 @@ struct SelectionInput {
     std::uint64_t pointBudget = 0;
     std::uint64_t byteBudget = 0;
     double minNodePixels = 0; // discrete detail; the root of a cloud is wanted at any size
+    PriorityWeights weights;  // discrete detail
     double detailPixels =
         0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
 };

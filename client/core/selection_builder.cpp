@@ -13,10 +13,12 @@ constexpr double coarseHeights = 0.5;
 
 } // namespace
 
-bool SelectionBuilder::inView(const HierarchyNode& node) {
-    bool seen = frustum_.intersects(node.geometry.box);
-    counters().nodesOutsideFrustum += !seen;
-    return seen;
+Sight SelectionBuilder::sightOf(const HierarchyNode& node, Sight parent) {
+    if (parent == Sight::inside)
+        return parent;
+    Sight sight = frustum_.sightOf(node.geometry.box);
+    counters().nodesOutsideFrustum += sight == Sight::outside;
+    return sight;
 }
 
 bool SelectionBuilder::choose(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,

@@ -14,8 +14,8 @@ class SelectionBuilder {
     explicit SelectionBuilder(const SelectionInput& input) : input_(input), frustum_(input.view) {}
 
     FrameCounters& counters() { return result_.counters; }
-    // Counts it if not.
-    bool inView(const HierarchyNode& node);
+    // Counts it if it is outside. `parent`: the sight of a box around the node's.
+    Sight sightOf(const HierarchyNode& node, Sight parent);
     double pixelsOf(const NodeGeometry& geometry) const {
         return projectedPixels(input_.view, input_.height, geometry.centre, geometry.radius);
     }

@@ -152,6 +152,7 @@ class Session final : public ViewSession {
         input.pointBudget = limits_.pointBudget;
         input.byteBudget = limits_.cacheBytes;
         input.minNodePixels = limits_.minNodePixels;
+        input.weights = limits_.weights;
         input.detailPixels = style_.detail.mode == DetailMode::continuous ? style_.detail.spacingPixels : 0;
         selection_ = select(input);
         selection_.counters.complete &= !loading_.anyOpening();

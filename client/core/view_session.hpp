@@ -9,6 +9,7 @@
 #include "client/core/frame_plan.hpp"
 #include "client/core/node_decoder.hpp"
 #include "client/core/point_record.hpp"
+#include "client/core/priority_weights.hpp"
 #include "client/core/style.hpp"
 #include "shared/io/byte_source.hpp"
 
@@ -23,6 +24,7 @@ namespace stipple {
 struct SessionLimits {
     std::uint64_t pointBudget = 2'000'000;   // points drawn in a frame, all clouds
     double minNodePixels = 60;               // nodes that project smaller are not wanted
+    PriorityWeights weights;                 // what matters more than its size says (priority_weights.hpp)
     std::uint64_t cacheBytes = 512ull << 20; // decoded nodes
     int requestsInFlight = 6;                // a browser's connections to one host
     std::uint64_t bytesInFlight = 8ull << 20;

@@ -40,6 +40,8 @@ export interface Style {
 export interface Limits {
     pointBudget: number;
     minNodePixels: number;
+    leastCentreWeight: number;
+    leastDepthWeight: number;
     cacheBytes: number;
     requestsInFlight: number;
     bytesInFlight: number;

@@ -316,6 +316,39 @@ bool seenByClipping(const ViewTransform& view, const BoxD& box) {
 
 } // namespace
 
+TEST_CASE("weights follow the paper: 1 in the middle, the least at a side's middle and far away") {
+    ViewTransform view;
+    view.eye = {0, 0, 0};
+    view.forward = {0, 1, 0};
+    view.right = {1, 0, 0};
+    view.up = {0, 0, 1};
+    view.tanHalfFovY = 0.5;
+    view.aspect = 2;
+    view.near = 1;
+    view.far = 101;
+    PriorityWeights half{0.5, 0.5};
+    PriorityWeights centre{0.5, 1}, depth{1, 0.2};
+    CHECK(priorityWeight({}, view, {70, 100, 3}) == 1);
+    CHECK(priorityWeight(half, view, {0, 1, 0}) == Approx(1));
+    CHECK(priorityWeight(centre, view, {0, 10, 5}) == Approx(0.5));    // top
+    CHECK(priorityWeight(centre, view, {10, 10, 0}) == Approx(0.5));   // right
+    CHECK(priorityWeight(centre, view, {5, 10, 0}) == Approx(0.875));  // half way: 1 - 0.5 / 4
+    CHECK(priorityWeight(centre, view, {100, 10, 99}) == Approx(0.5)); // beyond: no less
+    CHECK(priorityWeight(depth, view, {0, 101, 0}) == Approx(0.2));
+    CHECK(priorityWeight(depth, view, {0, 51, 0}) == Approx(1 - 0.8 / 4));
+    CHECK(priorityWeight(half, view, {0, -3, 0}) == 1); // behind
+}
+
+TEST_CASE("with weights the middle is refined before the border") {
+    Tree tree;
+    tree.camera.position = {16, 16, 100}; // above a
+    tree.camera.target = {16, 16, 0};
+    tree.input.pointBudget = 450; // the root, and three and a half more
+    CHECK(tree.selected(tree.select()) == "r a c b d ");
+    tree.input.weights = {0.3, 1};
+    CHECK(tree.selected(tree.select()) == "r a c b a0 ");
+}
+
 TEST_CASE("the frustum test agrees with clipping, for boxes before, around and behind the eye") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(-1, 1);
