@@ -25,6 +25,7 @@ struct FrameCounters {
     std::uint64_t passesRun = 0;     // full-screen or geometry passes of the renderer
     std::uint64_t passesSkipped = 0; // passes a setting made unnecessary
     double detailPixels = 0;         // continuous detail: target spacing; 0 with discrete levels
+    double coarserForTime = 1;       // factor of the spacing between points that the frame time asks for
     bool complete = false;           // everything the selection wants is drawn
 };
 

@@ -156,6 +156,7 @@ Result<SessionLimits> detail::readLimits(const json& value, const SessionLimits&
     FieldReader fields(value, "limits");
     fields.number("pointBudget", limits.pointBudget, 1, most);
     fields.number("minNodePixels", limits.minNodePixels, 0, 1e6);
+    fields.number("frameMilliseconds", limits.frameMilliseconds, 0, 60'000);
     fields.number("leastCentreWeight", limits.weights.leastCentre, 0, 1);
     fields.number("leastDepthWeight", limits.weights.leastDepth, 0, 1);
     fields.number("cacheBytes", limits.cacheBytes, 1, most);
@@ -221,6 +222,7 @@ json toJson(const Style& style) {
 json toJson(const SessionLimits& limits) {
     return {{"pointBudget", limits.pointBudget},
             {"minNodePixels", limits.minNodePixels},
+            {"frameMilliseconds", limits.frameMilliseconds},
             {"leastCentreWeight", limits.weights.leastCentre},
             {"leastDepthWeight", limits.weights.leastDepth},
             {"cacheBytes", limits.cacheBytes},
@@ -248,6 +250,7 @@ json toJson(const FrameCounters& c) {
             {"passesRun", c.passesRun},
             {"passesSkipped", c.passesSkipped},
             {"detailPixels", c.detailPixels},
+            {"coarserForTime", c.coarserForTime},
             {"complete", c.complete}};
 }
 

@@ -1,6 +1,7 @@
 #include "client/core/view_session.hpp"
 
 #include "client/core/frame_planner.hpp"
+#include "client/core/frame_time_controller.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/session_loading.hpp"
 #include "shared/base/text.hpp"
@@ -80,6 +81,12 @@ class Session final : public ViewSession {
     }
     const SessionLimits& limits() const override { return limits_; }
 
+    void frameTook(double seconds) override {
+        // It shows with the next selection: what stands still is not drawn again for it.
+        pace_.frameTook(seconds, limits_.frameMilliseconds / 1000);
+    }
+    void refineAtRest() override { dirty_ |= pace_.reset(); }
+
     bool update(std::chrono::milliseconds wait) override {
         loading_.deliver(dirty_ || planDirty_ ? std::chrono::milliseconds{} : wait);
         SessionLoading::Arrivals arrivals = loading_.takeArrivals();
@@ -149,12 +156,18 @@ class Session final : public ViewSession {
         input.view = view_;
         input.height = height_;
         input.clouds = inputs;
+        bool isContinuous = style_.detail.mode == DetailMode::continuous;
+        double coarser = limits_.frameMilliseconds > 0 ? pace_.factor() : 1;
         input.pointBudget = limits_.pointBudget;
+        if (!isContinuous)
+            input.pointBudget =
+                static_cast<std::uint64_t>(static_cast<double>(limits_.pointBudget) / (coarser * coarser));
         input.byteBudget = limits_.cacheBytes;
         input.minNodePixels = limits_.minNodePixels;
         input.weights = limits_.weights;
-        input.detailPixels = style_.detail.mode == DetailMode::continuous ? style_.detail.spacingPixels : 0;
+        input.detailPixels = isContinuous ? style_.detail.spacingPixels * coarser : 0;
         selection_ = select(input);
+        selection_.counters.coarserForTime = coarser;
         selection_.counters.complete &= !loading_.anyOpening();
 
         // Least recently used are then the finest first, the root last.
@@ -268,6 +281,7 @@ class Session final : public ViewSession {
     Style style_;
     int width_ = 1280, height_ = 720;
 
+    FrameTimeController pace_;
     SessionCounters counters_;
     SessionLoading loading_;
 

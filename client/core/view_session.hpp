@@ -22,9 +22,11 @@
 namespace stipple {
 
 struct SessionLimits {
-    std::uint64_t pointBudget = 2'000'000;   // points drawn in a frame, all clouds
-    double minNodePixels = 60;               // nodes that project smaller are not wanted
-    PriorityWeights weights;                 // what matters more than its size says (priority_weights.hpp)
+    std::uint64_t pointBudget = 2'000'000; // points drawn in a frame, all clouds
+    double minNodePixels = 60;             // nodes that project smaller are not wanted
+    PriorityWeights weights;               // what matters more than its size says (priority_weights.hpp)
+    // What a frame may take while the camera moves (frame_time_controller.hpp); 0: as long as it takes.
+    double frameMilliseconds = 0;
     std::uint64_t cacheBytes = 512ull << 20; // decoded nodes
     int requestsInFlight = 6;                // a browser's connections to one host
     std::uint64_t bytesInFlight = 8ull << 20;
@@ -71,6 +73,12 @@ class ViewSession {
     virtual const Style& style() const = 0;
     virtual void setLimits(const SessionLimits& limits) = 0;
     virtual const SessionLimits& limits() const = 0;
+
+    // How long the last frame took from its beginning to the next one that could be drawn. Makes the
+    // following selections coarser or finer; nothing where limits().frameMilliseconds is 0.
+    virtual void frameTook(double seconds) = 0;
+    // The camera has come to rest: what was coarser for the sake of time is drawn as fine as asked for.
+    virtual void refineAtRest() = 0;
 
     // Takes arrivals, waiting up to `wait` for the first when something is on its way; selects and requests
     // again if anything changed. True: plan() is new and should be drawn. False: the last picture stands.

@@ -53,6 +53,9 @@ class Viewer {
     // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
     // kept for drawError().
     bool frame();
+    // See ViewSession.
+    void frameTook(double seconds) { session_->frameTook(seconds); }
+    void refineAtRest() { session_->refineAtRest(); }
     // Draws the present picture once more, for reading it back.
     void redraw() { drawAgain_ = true; }
     bool settled() const;

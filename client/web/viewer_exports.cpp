@@ -104,6 +104,12 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_take_pick() {
 EMSCRIPTEN_KEEPALIVE int stipple_frame() {
     return viewer->frame() ? 1 : 0;
 }
+EMSCRIPTEN_KEEPALIVE void stipple_frame_took(double seconds) {
+    viewer->frameTook(seconds);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_refine_at_rest() {
+    viewer->refineAtRest();
+}
 EMSCRIPTEN_KEEPALIVE void stipple_redraw() {
     viewer->redraw();
 }

@@ -314,6 +314,39 @@ describe('moving', () => {
         await page.close();
     });
 
+    test('a frame time draws coarser while the camera moves, and all of it once it rests', async () => {
+        const { page } = await openTown();
+        const whole = await readPixels(page);
+        const { frame: before } = await counters(page);
+        await page.evaluate(() => window.stipple.setLimits({ frameMilliseconds: 5 }));
+        await settle(page);
+        const fewest = await page.evaluate(async () => {
+            const start = window.stipple.camera();
+            let least = Infinity, coarsest = 1;
+            for (let i = 1; i <= 40; i++) {
+                const position = start.position.map((value, axis) => value + (start.target[axis] - value) * 0.002 * i);
+                window.stipple.setCamera({ position });
+                await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+                const { frame } = window.stipple.counters();
+                least = Math.min(least, frame.pointsDrawn);
+                coarsest = Math.max(coarsest, frame.coarserForTime);
+            }
+            window.stipple.setCamera(start);
+            return { least, coarsest };
+        });
+        report('while it moved', { ...fewest, atRest: before.pointsDrawn });
+        assert.ok(fewest.coarsest > 1.2);
+        assert.ok(fewest.least < 0.8 * before.pointsDrawn);
+        await page.waitForFunction(() => window.stipple.counters().frame.coarserForTime === 1);
+        await settle(page);
+        assert.equal((await counters(page)).frame.pointsDrawn, before.pointsDrawn);
+        assert.equal(compare(whole, await readPixels(page)).differing, 0);
+        const rested = await counters(page);
+        await page.waitForTimeout(800);
+        assert.equal((await counters(page)).session.framesDrawn, rested.session.framesDrawn);
+        await page.close();
+    });
+
     test('a lost WebGL context comes back with the picture', async () => {
         const { page } = await openTown();
         const before = await readPixels(page);

@@ -4,6 +4,8 @@ import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /** What failed is tried again after a pause, and no arrival tells when that is over: so look now and then. */
 const retryPauseMs = 200;
+/** So long after the last frame the camera is at rest. */
+const restPauseMs = 250;
 
 /**
  * What the page shows and the elements change: the viewer's state as last read, and the frame loop. The loop
@@ -28,6 +30,9 @@ export class Model extends EventTarget {
     private lastQuestion = 0;
     private frameIsDue = false;
     private reportIsDue = false;
+    /** The camera has not moved for a while. */
+    private atRest = true;
+    private restTimer: ReturnType<typeof setTimeout> | undefined;
     private lookAgainTimer: ReturnType<typeof setTimeout> | undefined;
     private settledWaiters: (() => void)[] = [];
     private readonly toldErrors = new Set<string>();
@@ -102,6 +107,7 @@ export class Model extends EventTarget {
         this.act(() => this.viewer.setLimits(change));
     }
     changeCamera(change: object): void {
+        this.atRest = false;
         this.act(() => this.viewer.setCamera(change));
     }
     showView(view: NamedView): void {
@@ -114,14 +120,17 @@ export class Model extends EventTarget {
     // Steps of the camera, in CSS pixels of the canvas.
 
     orbit(dx: number, dy: number): void {
+        this.atRest = false;
         this.viewer.orbit(dx * this.pixelRatio, dy * this.pixelRatio);
         this.wake();
     }
     pan(dx: number, dy: number): void {
+        this.atRest = false;
         this.viewer.pan(dx * this.pixelRatio, dy * this.pixelRatio);
         this.wake();
     }
     zoom(factor: number, x: number, y: number): void {
+        this.atRest = false;
         this.viewer.zoom(factor, x * this.pixelRatio, y * this.pixelRatio);
         this.wake();
     }
@@ -211,11 +220,26 @@ export class Model extends EventTarget {
 
     private frame(): void {
         this.frameIsDue = false;
-        this.viewer.frame();
+        const start = performance.now();
+        if (this.viewer.frame() && !this.atRest && this.limits.frameMilliseconds > 0) this.timeFrame(start);
         clearTimeout(this.lookAgainTimer);
         if (this.viewer.settled()) this.settledWaiters.splice(0).forEach((resolve) => resolve());
         else this.lookAgainTimer = setTimeout(() => this.wake(), retryPauseMs);
         this.report();
+    }
+
+    /**
+     * The browser calls for the next frame when it could draw one, so that is how long this one took. Once no
+     * further frame comes for a while, the camera rests.
+     */
+    private timeFrame(start: number): void {
+        requestAnimationFrame(() => this.viewer.frameTook((performance.now() - start) / 1000));
+        clearTimeout(this.restTimer);
+        this.restTimer = setTimeout(() => {
+            this.atRest = true; // what is drawn now may take its time
+            this.viewer.refineAtRest();
+            this.wake();
+        }, restPauseMs);
     }
 
     /** Tells the elements, at most ten times a second. */

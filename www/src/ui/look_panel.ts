@@ -78,6 +78,13 @@ export class LookPanel extends ModelElement {
                 formatCompact(limits.pointBudget),
                 (pointBudget) => this.model.changeLimits({ pointBudget }),
             )}
+            ${slider(
+                'Frame time',
+                Math.max(limits.frameMilliseconds, 1),
+                { min: 1, max: 200, logarithmic: true, digits: 2 },
+                limits.frameMilliseconds > 0 ? `${Math.round(limits.frameMilliseconds)} ms` : 'any',
+                (milliseconds) => this.model.changeLimits({ frameMilliseconds: milliseconds < 2 ? 0 : milliseconds }),
+            )}
             ${choice(
                 'Detail',
                 'detail',

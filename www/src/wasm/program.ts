@@ -43,6 +43,8 @@ export interface ViewerProgram extends Program {
     _stipple_pick(x: number, y: number, radius: number): Address;
     _stipple_take_pick(): Address;
     _stipple_frame(): number;
+    _stipple_frame_took(seconds: number): void;
+    _stipple_refine_at_rest(): void;
     _stipple_redraw(): void;
     _stipple_settled(): number;
     _stipple_counters(): Address;

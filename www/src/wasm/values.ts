@@ -40,6 +40,7 @@ export interface Style {
 export interface Limits {
     pointBudget: number;
     minNodePixels: number;
+    frameMilliseconds: number;
     leastCentreWeight: number;
     leastDepthWeight: number;
     cacheBytes: number;

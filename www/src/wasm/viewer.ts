@@ -99,6 +99,14 @@ export class Viewer {
     frame(): boolean {
         return this.program._stipple_frame() !== 0;
     }
+    /** How long a frame took until the next one could be drawn. */
+    frameTook(seconds: number): void {
+        this.program._stipple_frame_took(seconds);
+    }
+    /** What was coarser while the camera moved is drawn as fine as asked for. */
+    refineAtRest(): void {
+        this.program._stipple_refine_at_rest();
+    }
     /** Has the next frame draw, also when nothing changed. */
     redraw(): void {
         this.program._stipple_redraw();
