@@ -1,5 +1,6 @@
 #include "converter/export/minimum_distance.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -34,6 +35,15 @@ class Cells {
     std::vector<std::uint32_t> heads_, next_;
 };
 
+// Of the axes that count; 0 if none does.
+double leastStep(Vec3d scale) {
+    double least = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        if (scale[axis] > 0 && (least == 0 || scale[axis] < least))
+            least = scale[axis];
+    return least;
+}
+
 } // namespace
 
 Result<std::vector<std::uint32_t>> thinned(std::span<const Vec3i> points, Vec3i corner, Vec3d scale,
@@ -42,9 +52,10 @@ Result<std::vector<std::uint32_t>> thinned(std::span<const Vec3i> points, Vec3i 
         return Vec3d{static_cast<double>(p.x) * scale.x, static_cast<double>(p.y) * scale.y,
                      static_cast<double>(p.z) * scale.z};
     };
-    // Cells a little wider than the distance, so that rounding puts no near pair two cells apart. Past 2^62
-    // of them, distances are below a grid step's rounding and only equal points are near.
-    double cellsPerUnit = (1 - 0x1p-20) / distance;
+    // Cells a little wider than the distance, so that rounding puts no near pair two cells apart; and no
+    // narrower than a grid step, below which only equal points are near, or far points would share the last
+    // cell. (Past 2^62 they do, where one axis has steps 2^10 times as long as another's.)
+    double cellsPerUnit = (1 - 0x1p-20) / std::max(distance, leastStep(scale));
     auto cellOf = [&](Vec3d at) {
         auto index = [&](double value) {
             return static_cast<std::int64_t>(std::floor(std::min(value * cellsPerUnit, 0x1p62)));

@@ -3,6 +3,7 @@
 #include "converter/export/filter_text.hpp"
 #include "converter/export/minimum_distance.hpp"
 #include "converter/export/value_ranges.hpp"
+#include "tests/support/counting_gate.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -230,7 +231,7 @@ TEST_CASE("attributes are found by name, in any case, commas included") {
 
 TEST_CASE("thinned points keep their distance, and each point left out is near to one kept") {
     std::mt19937_64 random(4);
-    for (double distance : {0.5, 3.0, 40.0, 1e9}) {
+    for (double distance : {1e-100, 0.1, 0.5, 3.0, 40.0, 1e9}) {
         std::vector<Vec3i> points;
         for (int i = 0; i < 1500; ++i)
             points.push_back({static_cast<std::int64_t>(random() % 200) - 50,
@@ -251,4 +252,22 @@ TEST_CASE("thinned points keep their distance, and each point left out is near t
         REQUIRE(kept.ok());
         CHECK(*kept == expected);
     }
+}
+
+TEST_CASE("thinning to less than a grid step takes no longer than to one") {
+    std::mt19937_64 random(5);
+    std::vector<Vec3i> points;
+    for (int i = 0; i < 30000; ++i)
+        points.push_back(
+            {static_cast<std::int64_t>(random() % 100000), static_cast<std::int64_t>(random() % 100000), 7});
+    auto secondsTo = [&](double distance) {
+        double before = test::CountingGate::cpuSeconds();
+        auto kept = thinned(points, {0, 0, 0}, {0.01, 0.01, 0}, distance);
+        REQUIRE(kept.ok());
+        CHECK(kept->size() > 29900);
+        return test::CountingGate::cpuSeconds() - before;
+    };
+    double usual = secondsTo(0.01);
+    CHECK(secondsTo(1e-100) < 10 * usual); // a hundred times, when all of them shared a cell
+    CHECK(secondsTo(1e-9) < 10 * usual);
 }
