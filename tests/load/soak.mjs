@@ -141,6 +141,7 @@ async function crowds() {
 }
 
 const clientKinds = ['changing', 'changing', 'changing', 'several', 'page', 'list', 'points', 'points', 'profile', 'nodes', 'image', 'leaves', 'leaves'];
+const mostIdle = sanitized ? 0.2 : mostIdleShare;
 const samples = Object.fromEntries(Object.keys(servers).map((name) => [name, []]));
 for (let round = 0; round < rounds; ++round) {
     isQuiet = false;
@@ -150,11 +151,17 @@ for (let round = 0; round < rounds; ++round) {
     isQuiet = true;
     await Promise.all(loads);
     await sleep(Math.max(500, roundSeconds * 50)); // jobs of clients that left end
-    const cpu = Object.fromEntries(Object.entries(servers).map(([name, { pid }]) => [name, cpuSeconds(pid)]));
+    // A sanitized server is ten times as slow to end what it had begun, so it may have a few looks; one that is busy for ever is
+    // so at the last, too.
     const idleSeconds = Math.max(1, roundSeconds * 0.1);
-    await sleep(idleSeconds * 1000);
+    let idle;
+    for (let look = 0; look < (sanitized ? 8 : 1) && (look === 0 || Math.max(...Object.values(idle)) > mostIdle); ++look) {
+        const cpu = Object.fromEntries(Object.entries(servers).map(([name, { pid }]) => [name, cpuSeconds(pid)]));
+        await sleep(idleSeconds * 1000);
+        idle = Object.fromEntries(Object.entries(servers).map(([name, { pid }]) => [name, (cpuSeconds(pid) - cpu[name]) / idleSeconds]));
+    }
     for (const [name, server] of Object.entries(servers)) {
-        const sample = { ...footprint(server.pid), idle: (cpuSeconds(server.pid) - cpu[name]) / idleSeconds };
+        const sample = { ...footprint(server.pid), idle: idle[name] };
         samples[name].push(sample);
         console.log(`${round + 1}/${rounds} ${name}: ${sample.mb.toFixed(1)} MB, ${sample.descriptors} descriptors, ${(sample.idle * 100).toFixed(1)} % of a core without clients`);
     }
@@ -170,7 +177,7 @@ for (const [name, list] of Object.entries(samples)) {
     if (!sanitized && after > before * (1 + mostGrowth) + mostGrowthMb) failures.add(`${name}: memory grew from ${before} to ${after} MB`);
     if (descriptors > most + mostDescriptorGrowth) failures.add(`${name}: descriptors grew from ${most} to ${descriptors}`);
     const busiest = Math.max(...list.map((sample) => sample.idle));
-    if (busiest > (sanitized ? 0.2 : mostIdleShare)) failures.add(`${name}: ${(busiest * 100).toFixed(1)} % of a core without clients`);
+    if (busiest > mostIdle) failures.add(`${name}: ${(busiest * 100).toFixed(1)} % of a core without clients`);
 }
 for (const kind of ['range 206', 'ranges 206', 'page 200', 'points las 200', 'points laz 200', 'profile 200', 'node 200', 'image 200', 'client left', 'file replaced'])
     if (!(kind in counts)) failures.add(`there was no "${kind}": the load is not what it should be`);
