@@ -1,5 +1,7 @@
 #include "server/jobs/job_pool.hpp"
 
+#include "server/jobs/processors.hpp"
+
 #include <algorithm>
 #include <system_error>
 
@@ -10,7 +12,7 @@ namespace {
 constexpr int threadsForEachWorking = 4;
 } // namespace
 
-JobPool::JobPool(const JobLimits& limits) : limits_(limits) {
+JobPool::JobPool(const JobLimits& limits) : limits_(limits), processors_(allowedProcessors()) {
     if (limits_.working <= 0)
         limits_.working = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 2, 8);
     maxRunning_ = limits_.working * threadsForEachWorking;
@@ -107,6 +109,7 @@ JobCounts JobPool::counts() const {
 }
 
 void JobPool::work() {
+    runOn(processors_);
     std::unique_lock lock(mutex_);
     for (;;) {
         std::string client;

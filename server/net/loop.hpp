@@ -46,7 +46,8 @@ class Connection;
 
 class Loop {
   public:
-    explicit Loop(ServerState& state);
+    // `processors`: those that its thread runs on; none: any.
+    Loop(ServerState& state, std::vector<int> processors);
     ~Loop(); // after join()
 
     net::io_context& context() { return context_; }

@@ -1,5 +1,6 @@
 #include "server/net/server.hpp"
 
+#include "server/jobs/processors.hpp"
 #include "server/net/client_address.hpp"
 #include "server/net/loop.hpp"
 #include "shared/base/text.hpp"
@@ -51,10 +52,7 @@ class BeastServer final : public Server {
         state_.handler = std::move(handler);
         state_.log = std::move(log);
         state_.metricsFor = options.metrics;
-        int cores = static_cast<int>(std::thread::hardware_concurrency());
-        int threads = options.threads > 0 ? options.threads : std::clamp(cores, 1, 8);
-        for (int i = 0; i < threads; ++i)
-            loops_.push_back(std::make_unique<Loop>(state_));
+        startLoops(options.threads);
         for (auto& loop : loops_)
             state_.metrics.push_back(&loop->metrics());
         acceptor_ = std::make_unique<Acceptor>(loops_.front()->context());
@@ -144,6 +142,19 @@ class BeastServer final : public Server {
         acceptor_->close(ignored);
         pause_->cancel();
         state_.connections.close();
+    }
+
+    // One for each core, unless that would be too many. Where each core has one, it stays there: clients of a
+    // loop that has to wait for the core of another see it in their slowest answers.
+    void startLoops(int wanted) {
+        const std::vector<int> processors = allowedProcessors();
+        int cores = static_cast<int>(std::thread::hardware_concurrency());
+        int threads = wanted > 0 ? wanted : std::clamp(cores, 1, 8);
+        bool hasCoreEach = threads == static_cast<int>(processors.size());
+        for (int i = 0; i < threads; ++i)
+            loops_.push_back(std::make_unique<Loop>(
+                state_, hasCoreEach ? std::vector<int>{processors[static_cast<std::size_t>(i)]}
+                                    : std::vector<int>()));
     }
 
     // Runs on the first loop, and deals connections out to all in turn. When descriptors run out, or as many

@@ -15,8 +15,8 @@ namespace {
 
 // Bytes that wait in the kernel for a client that is behind, beside those that are under way to it. Without
 // this limit it is what tcp_wmem allows, 4 MiB, and a thousand clients that don't read exhaust the memory for
-// TCP of all.
-constexpr int mostUnsentBytes = 256 * 1024;
+// TCP of all. With more, those that are ahead go on being so, and the slowest answers take longer.
+constexpr int mostUnsentBytes = 64 * 1024;
 constexpr unsigned char tlsHandshakeRecord = 0x16; // RFC 8446 §5.1
 
 Moved movedOr(ssize_t moved, Wait whenFull) {

@@ -1,9 +1,11 @@
 // What a connection does: many requests, bad requests, slow clients, many clients, the end.
+#include "server/jobs/processors.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -206,6 +208,48 @@ TEST_CASE("two hundred clients at once are all answered") {
     }
     CHECK(wrong == 0);
     CHECK(server.logOf(600).size() == 600);
+}
+
+TEST_CASE("with an event loop for each core each stays on its own, and jobs run on any") {
+    class Handler final : public server::RequestHandler {
+      public:
+        server::Answer answer(const server::HttpRequest&, std::int64_t) const override {
+            return server::Job{"processors", [](server::AnswerWriter& writer) -> Status {
+                                   server::HttpResponse response;
+                                   response.body.push_back(
+                                       std::to_string(server::allowedProcessors().size()));
+                                   writer.answer(std::move(response));
+                                   return {};
+                               }};
+        }
+        void complete(const server::HttpRequest&, server::HttpResponse&) const override {}
+    };
+    std::size_t all = server::allowedProcessors().size();
+    if (all < 2 || all > 8)
+        return;        // one loop for all, or fewer loops than cores
+    auto bound = [&] { // threads of this program that stay on one core
+        int count = 0;
+        for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+            std::string status = readFile(task.path() / "status"), field = "\nCpus_allowed_list:\t";
+            std::size_t at = status.find(field) + field.size();
+            count += status.substr(at, status.find('\n', at) - at).find_first_of(",-") == std::string::npos;
+        }
+        return count;
+    };
+    int before = bound();
+    server::ServerOptions options;
+    {
+        auto started = server::Server::start(options, std::make_shared<Handler>(), {});
+        REQUIRE(started.ok());
+        for (int i = 0; i < 4; ++i) // of every loop
+            CHECK(askOnce((*started)->port(), "GET / HTTP/1.1\nHost: a").body == std::to_string(all));
+        CHECK(bound() == before + static_cast<int>(all));
+    }
+    options.threads = static_cast<int>(all) - 1;
+    auto fewer = server::Server::start(options, std::make_shared<Handler>(), {});
+    REQUIRE(fewer.ok());
+    CHECK(askOnce((*fewer)->port(), "GET / HTTP/1.1\nHost: a").status == 200);
+    CHECK(bound() == before);
 }
 
 TEST_CASE("clients beyond the limit wait their turn") {
