@@ -5,13 +5,6 @@
 
 namespace stipple {
 
-RankDensity rankDensity(int level, double spacing, std::uint32_t points) {
-    double square = spacing * spacing, count = std::max(1u, points);
-    if (level == 0)
-        return {0.5 / (count * square), 1 / (count * square)};
-    return {(1 + 1.5 / count) / (4 * square), 3 / (4 * count * square)};
-}
-
 double focalPixels(const ViewTransform& view, int height) {
     double halfHeight = view.projection == Projection::perspective ? view.tanHalfFovY : view.halfHeight;
     return height / (2 * halfHeight);

@@ -10,7 +10,8 @@
 //   1/2) / n),
 //
 // from 2 S, which is where the parent ends, to S. The root has no ancestors: its first r points are all there
-// are, so its spacings are S / sqrt((r + 1/2) / n). Either way 1 / spacing² is linear in r:  base + step · r.
+// are, so its spacings are S / sqrt((r + 1/2) / n). Either way 1 / spacing² is linear in r:  base + step · r
+// (rank_density.hpp, also of leaves, which may hold more points than S says).
 //
 // A point is drawn where its spacing exceeds the target, which is `spacingPixels` on the screen (eq. 2 with
 // CLOD = 1000 spacingPixels / focal length in pixels; so a zoomed or orthographic view counts as what it
@@ -20,17 +21,11 @@
 #pragma once
 
 #include "client/core/frame_plan.hpp"
+#include "client/core/rank_density.hpp"
 
 #include <cstdint>
 
 namespace stipple {
-
-// 1 / spacing² of a node's points: base + step × rank. World units^-2.
-struct RankDensity {
-    double base = 0, step = 0;
-};
-// `spacing` > 0, `points` > 0: of the whole node.
-RankDensity rankDensity(int level, double spacing, std::uint32_t points);
 
 // Pixels that a world unit takes at distance 1 in perspective, anywhere in orthographic views.
 double focalPixels(const ViewTransform& view, int height);

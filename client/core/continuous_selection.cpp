@@ -110,8 +110,7 @@ class ContinuousSelector {
             return;
         const NodeKey& key = known.entry.key;
         double pixel = pixelOf(known.geometry.box, sight);
-        RankDensity density =
-            rankDensity(key.level, input_.clouds[cloud].hierarchy->spacingOf(key), known.entry.pointCount);
+        RankDensity density = input_.clouds[cloud].hierarchy->densityOf(node);
         double reach = reachPixels(density, pixel);
         if (reach <= input_.detailPixels) {
             ++counters().nodesTooSmall;

@@ -22,6 +22,7 @@
 #pragma once
 
 #include "client/core/counters.hpp"
+#include "client/core/rank_density.hpp"
 #include "client/core/resident_node.hpp"
 #include "client/core/style.hpp"
 #include "shared/geometry/vec3.hpp"
@@ -59,6 +60,7 @@ struct DrawNode {
     Vec3d scale;                              // world units per integer
     double cameraZ = 0;      // world z of the camera, for elevation: z = cameraZ + relative.z
     double spacing = 0;      // minimum distance of the node's points, world units
+    RankDensity density;     // of its points by rank, for continuous detail
     std::uint32_t cloud = 0; // whose node it is (CloudId of the session); nodes of one octree have the same
 };
 

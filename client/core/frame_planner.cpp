@@ -82,6 +82,7 @@ DrawNode planNode(std::shared_ptr<const ResidentNode> node, std::uint32_t pointC
     draw.scale = grid.scale;
     draw.cameraZ = eye.z;
     draw.spacing = std::ldexp(metadata.spacing, -node->key.level);
+    draw.density = rankDensity(node->key.level, draw.spacing, node->totalPoints);
     draw.node = std::move(node);
     return draw;
 }

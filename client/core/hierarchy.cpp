@@ -3,6 +3,7 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace stipple {
@@ -155,6 +156,18 @@ NodeGeometry Hierarchy::geometryOf(const NodeKey& key) const {
         geometry.box.max[axis] = std::min(min[axis] + size[axis], bounds_.max[axis]);
     }
     return geometry;
+}
+
+RankDensity Hierarchy::densityOf(std::size_t index) const {
+    const HierarchyNode& node = nodes_[index];
+    RankDensity density = rankDensity(node.entry.key.level, spacingOf(node.entry.key), node.entry.pointCount);
+    if (node.entry.childMask != 0 || node.parent < 0)
+        return density;
+    const NodeEntry& parent = nodes_[static_cast<std::size_t>(node.parent)].entry;
+    if (parent.pointCount == 0)
+        return density;
+    return leafDensity(density, rankDensity(parent.key.level, spacingOf(parent.key), parent.pointCount),
+                       std::popcount(parent.childMask));
 }
 
 double Hierarchy::spacingOf(const NodeKey& key) const {

@@ -6,6 +6,7 @@
 // one above it ends in an error, not in a circle.
 #pragma once
 
+#include "client/core/rank_density.hpp"
 #include "shared/base/result.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_entry.hpp"
@@ -61,6 +62,8 @@ class Hierarchy {
     NodeGeometry geometryOf(const NodeKey& key) const;
     // Minimum distance of a node's points, world units.
     double spacingOf(const NodeKey& key) const;
+    // Of a node's points by rank; `index` must have points.
+    RankDensity densityOf(std::size_t index) const;
 
   private:
     Status append(std::int32_t root, std::vector<NodeEntry> nodes);

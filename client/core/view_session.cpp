@@ -251,6 +251,7 @@ class Session final : public ViewSession {
             next.nodes.push_back(
                 planNode(cached->node, selected.drawPoints, *cloud.opened.metadata, view_.eye));
             next.nodes.back().cloud = cloud.state.id;
+            next.nodes.back().density = cloud.hierarchy.densityOf(selected.node);
         }
         bool differs = !drawnOnce_ || !samePicture(next, plan_);
         drawnOnce_ = true;

@@ -165,10 +165,9 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
     raster.positionShift = node.node->positionShift;
     setDeep(plan, node, focal.x, focal.y, raster);
     if (plan.detailPixels > 0) {
-        RankDensity density = rankDensity(node.node->key.level, node.spacing, node.node->totalPoints);
         double target = plan.detailPixels / focal.y; // world units, at distance 1 in perspective
-        raster.rankBase = static_cast<float>(density.base * target * target);
-        raster.rankStep = static_cast<float>(density.step * target * target);
+        raster.rankBase = static_cast<float>(node.density.base * target * target);
+        raster.rankStep = static_cast<float>(node.density.step * target * target);
     }
 
     raster.nodeSize64 = static_cast<float>(node.spacing * style.sizeSpacings * focal.y * sizeSteps);

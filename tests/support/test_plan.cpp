@@ -51,6 +51,8 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
         ++index;
         DrawNode draw;
         draw.spacing = node.spacing;
+        if (node.spacing > 0 && resident->totalPoints > 0)
+            draw.density = rankDensity(resident->key.level, node.spacing, resident->totalPoints);
         draw.pointCount = resident->pointCount;
         draw.scale = node.scale;
         for (int axis = 0; axis < 3; ++axis) {

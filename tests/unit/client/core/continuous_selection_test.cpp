@@ -74,8 +74,7 @@ struct Plane {
         std::map<std::uint32_t, std::uint32_t> prefixes;
         for (std::uint32_t i = 0; i < hierarchy.size(); ++i) {
             const HierarchyNode& node = hierarchy.node(i);
-            RankDensity density =
-                rankDensity(node.entry.key.level, hierarchy.spacingOf(node.entry.key), node.entry.pointCount);
+            RankDensity density = hierarchy.densityOf(i);
             double nearest =
                 std::max(Frustum(input.view).nearestDistance(node.geometry.box), input.view.near);
             std::uint32_t prefix = detailPrefix(density, node.entry.pointCount,
@@ -147,8 +146,7 @@ TEST_CASE("the points that are expected to show are about those that do") {
         constexpr int across = 60;
         for (const SelectedNode& selected : frame.nodes) {
             const HierarchyNode& node = plane.hierarchy.node(selected.node);
-            RankDensity density = rankDensity(node.entry.key.level, plane.hierarchy.spacingOf(node.entry.key),
-                                              node.entry.pointCount);
+            RankDensity density = plane.hierarchy.densityOf(selected.node);
             Vec3d low = node.geometry.box.min - plane.input.view.eye,
                   size = node.geometry.box.max - node.geometry.box.min;
             for (int y = 0; y < across; ++y)

@@ -28,8 +28,10 @@ TestView viewOf(Projection projection) {
 FramePlan continuousPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style) {
     FramePlan plan = testPlan(nodes, view, style);
     plan.detailPixels = style.detail.spacingPixels;
-    for (DrawNode& node : plan.nodes)
+    for (DrawNode& node : plan.nodes) {
         node.spacing = spacing;
+        node.density = rankDensity(node.node->key.level, spacing, node.node->totalPoints);
+    }
     return plan;
 }
 

@@ -1,0 +1,19 @@
+#include "client/core/rank_density.hpp"
+
+#include <algorithm>
+
+namespace stipple {
+
+RankDensity rankDensity(int level, double spacing, std::uint32_t points) {
+    double square = spacing * spacing, count = std::max(1u, points);
+    if (level == 0)
+        return {0.5 / (count * square), 1 / (count * square)};
+    return {(1 + 1.5 / count) / (4 * square), 3 / (4 * count * square)};
+}
+
+RankDensity leafDensity(const RankDensity& asOfAnyNode, const RankDensity& parent, int siblings) {
+    // parent.step is 1 over the area that the parent's points fill, in units of a point's.
+    return {asOfAnyNode.base, std::max(asOfAnyNode.step, siblings * parent.step)};
+}
+
+} // namespace stipple
