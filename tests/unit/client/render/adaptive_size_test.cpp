@@ -145,7 +145,7 @@ TEST_CASE("adaptive pictures are the reference's, and the same in software and G
                 REQUIRE(gles.ok());
                 measure::PixelError apart = measure::pixelError(picture, glesPicture(*context, **gles, plan),
                                                                 style.edl.enabled ? 3 : 2);
-                CHECK(apart.differing * 2000 <= picture.rgba.size() / 4);
+                CHECK(apart.differing <= allowedPixels(*context, picture.rgba.size() / 4));
                 apartPixels += apart.differing;
             }
     CHECK(static_cast<double>(unsure) < 0.25 * static_cast<double>(pixels));
@@ -165,7 +165,7 @@ TEST_CASE("adaptive sizes work with continuous detail alike in software and GLES
     plan.detailPixels = 8;
     Image picture = SoftwareRenderer::create(1)->render(plan);
     measure::PixelError apart = measure::pixelError(picture, glesPicture(*context, **gles, plan), 2);
-    CHECK(apart.differing * 2000 <= picture.rgba.size() / 4);
+    CHECK(apart.differing <= allowedPixels(*context, picture.rgba.size() / 4));
     plan.detailPixels = 0;
     CHECK(SoftwareRenderer::create(1)->render(plan).rgba != picture.rgba);
 }

@@ -218,6 +218,8 @@ TEST_CASE("software and GLES place points of deep orthographic views alike", "[g
             std::size_t differing = 0;
             for (std::size_t i = 0; i < image.rgba.size(); i += 4)
                 differing += image.rgba[i] != software.rgba[i] || image.rgba[i + 1] != software.rgba[i + 1];
-            CHECK(differing <= 2); // depths of one step may come out as another
+            CHECK(differing <= (isExact(*context)
+                                    ? 2
+                                    : allowedPixels(*context, image.rgba.size() / 4))); // a depth step or two
         }
 }
