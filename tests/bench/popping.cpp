@@ -1,0 +1,204 @@
+// What changes in a picture because points come and go, not because the camera moves: popping [FRAMES]
+// CLOUD... On a slow way towards the middle (0.3 % nearer each frame) the points that one frame shows are
+// drawn with the next frame's camera and compared with what that frame shows. Continuous detail against
+// levels with as many points, single sizes (no growing, which would soften it further). Of blocks of 16 × 16
+// pixels: mean level of change, root mean square, the largest block of a frame, each averaged over the
+// frames; and the worst of all.
+#include "client/core/continuous_detail.hpp"
+#include "client/core/frame_planner.hpp"
+#include "client/core/view_session.hpp"
+#include "client/headless/session_loader.hpp"
+#include "client/headless/thread_decoder.hpp"
+#include "client/render/software_renderer.hpp"
+#include "shared/io/file_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+using namespace stipple;
+
+namespace {
+
+constexpr int width = 1280, height = 720, blockPixels = 16;
+constexpr double step = 0.997, spacingPixels = 2;
+
+[[noreturn]] void fail(const Error& error) {
+    std::fprintf(stderr, "popping: %s\n", error.sentence().c_str());
+    std::exit(1);
+}
+
+struct Viewer {
+    std::unique_ptr<NodeDecoder> decoder = makeThreadDecoder(2);
+    std::unique_ptr<ViewSession> session;
+    std::unique_ptr<SoftwareRenderer> renderer = SoftwareRenderer::create(2);
+    std::shared_ptr<const CloudMetadata> metadata;
+    SessionLimits limits;
+
+    explicit Viewer(const std::string& path) {
+        limits.cacheBytes = 4ull << 30;
+        limits.minNodePixels = 0;
+        limits.pointBudget = 0;
+        session = ViewSession::create(*decoder, limits);
+        session->setViewport(width, height);
+        auto source = openFileSource(path);
+        if (!source.ok())
+            fail(source.error());
+        session->addCloud(std::move(*source), path);
+        settle([&] { return session->clouds()[0].stage == CloudStage::ready; });
+        metadata = session->clouds()[0].metadata;
+    }
+    void settle(const std::function<bool()>& done) {
+        headless::SessionLoader loader(*session, "cloud", std::chrono::minutes(5));
+        if (Status status = loader.until(done); !status.ok())
+            fail(status.error());
+    }
+    FramePlan plan(const Camera& camera, const Style& style, std::uint64_t budget) {
+        limits.pointBudget = budget;
+        session->setLimits(limits);
+        session->setStyle(style);
+        session->setCamera(camera);
+        session->update();
+        settle([&] { return session->settled(); });
+        return session->plan();
+    }
+    Camera cameraAt(int frame) const {
+        BoxD bounds = metadata->worldBounds();
+        Camera camera;
+        camera.target = bounds.min + (bounds.max - bounds.min) * 0.5;
+        camera.position = camera.target +
+                          Vec3d{-0.12, -0.18, 0.1} * length(bounds.max - bounds.min) * std::pow(step, frame);
+        return camera;
+    }
+};
+
+bool shows(const FramePlan& plan, const DrawNode& node, std::uint32_t rank, Vec3d world) {
+    if (plan.detailPixels == 0)
+        return true;
+    double distance = dot(world - plan.view.eye, plan.view.forward);
+    double target = plan.detailPixels * pixelWorld(plan.view, plan.height, distance);
+    return (node.density.base + node.density.step * rank) * target * target < 1;
+}
+
+// The plan with only the points that it shows, whole, as seen from another view.
+FramePlan frozen(const CloudMetadata& metadata, const FramePlan& plan, const ViewTransform& view,
+                 std::uint64_t& points) {
+    FramePlan result;
+    result.width = plan.width;
+    result.height = plan.height;
+    result.view = view;
+    result.style = plan.style;
+    result.style.detail.mode = DetailMode::discrete;
+    for (const DrawNode& node : plan.nodes) {
+        auto kept = std::make_shared<ResidentNode>();
+        kept->id = nextResidentNodeId();
+        kept->key = node.node->key;
+        kept->nodeBits = node.node->nodeBits;
+        kept->positionShift = node.node->positionShift;
+        Vec3i corner = metadata.rootCube.nodeMin(kept->key);
+        for (std::uint32_t i = 0; i < node.pointCount; ++i) {
+            Vec3<std::uint32_t> p = positionOf(*node.node, i);
+            Vec3d world = metadata.grid.toWorld({corner.x + p.x, corner.y + p.y, corner.z + p.z});
+            if (!shows(plan, node, i, world))
+                continue;
+            kept->positionWords.push_back(node.node->positionWords[2 * i]);
+            kept->positionWords.push_back(node.node->positionWords[2 * i + 1]);
+            if (kept->positionShift > 0)
+                kept->positionLowWords.push_back(node.node->positionLowWords[i]);
+            if (!node.node->colourWords.empty())
+                kept->colourWords.push_back(node.node->colourWords[i]);
+        }
+        kept->pointCount = kept->totalPoints = static_cast<std::uint32_t>(kept->positionWords.size() / 2);
+        points += kept->pointCount;
+        if (kept->pointCount > 0)
+            result.nodes.push_back(planNode(kept, kept->pointCount, metadata, view.eye));
+    }
+    return result;
+}
+
+struct Change {
+    double mean = 0, rms = 0, largest = 0;
+};
+// Over blocks: mean difference of levels.
+Change changeOf(const Image& a, const Image& b) {
+    Change change;
+    int blocks = 0;
+    for (int top = 0; top + blockPixels <= height; top += blockPixels)
+        for (int left = 0; left + blockPixels <= width; left += blockPixels) {
+            double sum = 0;
+            for (int y = top; y < top + blockPixels; ++y)
+                for (int x = left; x < left + blockPixels; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        auto at = static_cast<std::size_t>(4 * (y * width + x) + c);
+                        sum += std::abs(int{a.rgba[at]} - int{b.rgba[at]});
+                    }
+            double level = sum / (3.0 * blockPixels * blockPixels);
+            change.mean += level;
+            change.rms += level * level;
+            change.largest = std::max(change.largest, level);
+            ++blocks;
+        }
+    change.mean /= blocks;
+    change.rms = std::sqrt(change.rms / blocks);
+    return change;
+}
+
+struct Outcome {
+    Change mean;
+    double worst = 0, points = 0;
+};
+
+// Along the path. `budgets`: of each frame; empty: no limit.
+Outcome along(Viewer& viewer, const Style& style, int frames, std::vector<std::uint64_t>& counts,
+              bool follow) {
+    Outcome result;
+    FramePlan before;
+    for (int frame = 0; frame <= frames; ++frame) {
+        auto at = static_cast<std::size_t>(frame);
+        FramePlan plan = viewer.plan(viewer.cameraAt(frame), style, follow ? counts[at] : 1ull << 40);
+        std::uint64_t points = 0, earlier = 0;
+        FramePlan now = frozen(*viewer.metadata, plan, plan.view, points);
+        if (!follow)
+            counts.push_back(points);
+        result.points += static_cast<double>(points) / (frames + 1);
+        if (frame > 0) {
+            FramePlan old = frozen(*viewer.metadata, before, plan.view, earlier);
+            Image a = viewer.renderer->render(old);
+            Change change = changeOf(a, viewer.renderer->render(now));
+            result.mean.mean += change.mean / frames;
+            result.mean.rms += change.rms / frames;
+            result.mean.largest += change.largest / frames;
+            result.worst = std::max(result.worst, change.largest);
+        }
+        before = std::move(plan);
+    }
+    return result;
+}
+
+void show(const char* cloud, const char* mode, const Outcome& r) {
+    std::printf("| %s | %s | %.2f M | %.3f | %.3f | %.2f | %.2f |\n", cloud, mode, r.points / 1e6,
+                r.mean.mean, r.mean.rms, r.mean.largest, r.worst);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    int frames = argc > 1 ? std::atoi(argv[1]) : 0;
+    if (argc < 3 || frames < 1) {
+        std::fprintf(stderr, "popping FRAMES CLOUD.stipple...\n");
+        return 2;
+    }
+    std::printf("| cloud | | points | mean | RMS | largest block | worst |\n|---|---|---|---|---|---|---|\n");
+    for (int i = 2; i < argc; ++i) {
+        Viewer viewer(argv[i]);
+        std::vector<std::uint64_t> counts;
+        Style style;
+        style.detail.mode = DetailMode::continuous;
+        style.detail.spacingPixels = spacingPixels;
+        style.edl.enabled = false;
+        show(argv[i], "continuous", along(viewer, style, frames, counts, false));
+        style.detail.mode = DetailMode::discrete;
+        show(argv[i], "levels", along(viewer, style, frames, counts, true));
+    }
+}
