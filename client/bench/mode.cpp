@@ -37,6 +37,10 @@ constexpr const char* table = R"json([
  "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}}},
 {"name": "splats-adaptive", "about": "high-quality splats as wide as the spacing of the finest node, no lighting", "sweep": true,
  "style": {"sizeMode": "adaptive", "minSizePixels": 2, "splats": {"enabled": true}, "edl": {"enabled": false}}},
+{"name": "delayed-expansion", "about": "default, each pixel's nearest centre first", "sweep": true,
+ "style": {"delayedExpansion": "on"}},
+{"name": "splats-delayed", "about": "splats, each pixel's nearest centre first", "sweep": true,
+ "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}, "delayedExpansion": "on"}},
 {"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
@@ -47,6 +51,8 @@ constexpr const char* table = R"json([
  "style": {"sizeMode": "adaptive", "edl": {"enabled": false}}},
 {"name": "gles-splats", "about": "splats, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}}},
+{"name": "gles-delayed-expansion", "about": "delayed-expansion, with OpenGL ES", "backend": "gles",
+ "style": {"delayedExpansion": "on"}},
 {"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
 ])json";

@@ -49,6 +49,11 @@ constexpr Names<PointShape, 2> shapes{{
     {"square", PointShape::square},
     {"circle", PointShape::circle},
 }};
+constexpr Names<DelayedExpansion, 3> expansions{{
+    {"off", DelayedExpansion::off},
+    {"on", DelayedExpansion::on},
+    {"auto", DelayedExpansion::automatic},
+}};
 constexpr Names<CloudStage, 3> stages{{
     {"opening", CloudStage::opening},
     {"ready", CloudStage::ready},
@@ -137,6 +142,7 @@ Result<Style> detail::readStyle(const json& value, const Style& base) {
     if (style.minSizePixels > style.maxSizePixels)
         fields.fail("minSizePixels", "must not exceed maxSizePixels");
     fields.choice("shape", style.shape, shapes);
+    fields.choice("delayedExpansion", style.delayedExpansion, expansions);
     fields.object("splats", [&](FieldReader& splats) { readSplats(splats, style.splats); });
     fields.object("detail", [&](FieldReader& detail) { readDetail(detail, style.detail); });
     fields.object("edl", [&](FieldReader& edl) { readEdl(edl, style.edl); });
@@ -214,6 +220,7 @@ json toJson(const Style& style) {
             {"maxSizePixels", style.maxSizePixels},
             {"shape", nameOf(shapes, style.shape)},
             {"splats", splats},
+            {"delayedExpansion", nameOf(expansions, style.delayedExpansion)},
             {"detail", detail},
             {"edl", edl},
             {"background", style.background}};

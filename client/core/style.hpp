@@ -54,6 +54,11 @@ struct Splats {
     friend bool operator==(const Splats&, const Splats&) = default;
 };
 
+// Points are drawn as single pixels first; then the nearest of each pixel in its size (UnityPIC §4.3.3).
+// Quicker with many points, but what lies behind another point's centre is lost. `automatic`: where there are
+// more points than it pays for.
+enum class DelayedExpansion : std::uint8_t { off, on, automatic };
+
 struct Style {
     ColourMode colourMode = ColourMode::rgb;
     GradientName gradient = GradientName::viridis; // of intensity and elevation
@@ -68,6 +73,7 @@ struct Style {
     double minSizePixels = 1, maxSizePixels = 64;
     PointShape shape = PointShape::circle;
     Splats splats;
+    DelayedExpansion delayedExpansion = DelayedExpansion::off;
     Detail detail;
     EyeDomeLighting edl;
     std::array<std::uint8_t, 3> background{24, 26, 30};

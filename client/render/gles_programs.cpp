@@ -14,6 +14,7 @@ std::string definesFor(const PointVariant& variant) {
     defines += variant.lowWords ? "#define LOW_WORDS\n" : "";
     defines += variant.circle ? "#define CIRCLE\n" : "";
     defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
+    defines += variant.collect ? "#define COLLECT\n" : "";
     defines += variant.blend ? "#define BLEND\n" : "";
     defines += variant.identity ? "#define IDENTITY\n" : "";
     defines += variant.captureLevels ? "#define CAPTURE_LEVELS\n" : "";
@@ -42,8 +43,8 @@ Result<const PointProgram*> PointPrograms::get(const PointVariant& variant) {
 }
 
 Result<PointProgram> PointProgram::make(const PointVariant& variant) {
-    std::string vertex =
-        cat(variant.adaptive ? shader_texts::octree : "", shader_texts::sprite, shader_texts::pointsVertex);
+    std::string vertex = cat(variant.adaptive ? shader_texts::octree : "", shader_texts::sprite,
+                             variant.expand ? shader_texts::expandVertex : shader_texts::pointsVertex);
     STIPPLE_TRY(program, makeProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
                                      variant.captureLevels ? "vLevels" : nullptr));
     PointProgram made;
@@ -89,6 +90,10 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.hardness = at("uHardness");
     made.nodeIndex = at("uNode");
     made.window = at("uWindow");
+    made.centreColours = at("uCentreColours");
+    made.centreDepths = at("uCentreDepths");
+    made.centrePlaces = at("uCentrePlaces");
+    made.columns = at("uColumns");
     made.program = std::move(program);
     return made;
 }
@@ -110,6 +115,10 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform1f(blendFactor, frame.blendFactor);
     glUniform1i(nearest, nearestUnit);
     glUniform1i(hardness, frame.hardness);
+    glUniform1i(centreColours, centreColoursUnit);
+    glUniform1i(centreDepths, centreDepthsUnit);
+    glUniform1i(centrePlaces, centrePlacesUnit);
+    glUniform1i(columns, frame.width);
     glUniform1i(continuous, frame.continuous);
     glUniform1f(growth, frame.growth);
     glUniform2f(falloff, frame.falloffX, frame.falloffY);

@@ -15,6 +15,8 @@ struct PointVariant {
     bool circle = false;
     bool adaptive = false;
     bool blend = false;         // the pass of splats that blends
+    bool collect = false;       // the first pass of delayed expansion
+    bool expand = false;        // the second: expand.vert.glsl
     bool captureLevels = false; // adaptive; vLevels goes to transform feedback
     bool identity = false;      // writes which point a pixel shows (client/render/pick.hpp), not its colour
 
@@ -23,7 +25,8 @@ struct PointVariant {
 };
 
 // Texture units of the point programs.
-inline constexpr int gradientUnit = 0, octreeUnit = 1, nearestUnit = 2;
+inline constexpr int gradientUnit = 0, octreeUnit = 1, nearestUnit = 2, centreColoursUnit = 3,
+                     centreDepthsUnit = 4, centrePlacesUnit = 5;
 
 // points.vert.glsl + points.frag.glsl with one set of defines, and where its uniforms are.
 struct PointProgram {
@@ -37,6 +40,7 @@ struct PointProgram {
     GLint octree, octreePlace, nodeBits, nodeSize64;
     GLint radiusScale, blendFactor, nearest, hardness;
     GLint nodeIndex, window; // of programs that write identities
+    GLint centreColours, centreDepths, centrePlaces, columns;
 
     static Result<PointProgram> make(const PointVariant& variant);
     void useFor(const RasterFrame& frame) const;

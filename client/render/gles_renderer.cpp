@@ -23,6 +23,8 @@ constexpr std::string_view withoutFloats =
     "this graphics driver can't blend into floating-point colours (EXT_color_buffer_float): points are drawn "
     "without high-quality splats";
 
+constexpr ExpansionCosts expansionCosts{3, 1};
+
 constexpr float levelsInv = 1.0f / 255.0f;
 
 // Whether points can go straight to the framebuffer that is bound: one sample a pixel, 24 bits of depth.
@@ -68,11 +70,11 @@ class Gles3Renderer final : public GlesRenderer {
         if (!direct)
             STIPPLE_CHECK(points_.resize(plan.width, plan.height));
 
-        glBindFramebuffer(GL_FRAMEBUFFER, direct ? target : points_.framebuffer.id());
-        STIPPLE_CHECK(drawPoints(plan, frame));
-        plan.counters.passesRun += 1;
+        bool late = expandsLate(plan, frame, expansionCosts);
+        STIPPLE_CHECK(drawPoints(plan, frame, late, direct ? target : points_.framebuffer.id()));
+        plan.counters.passesRun += late ? 2 : 1;
         if (blends) {
-            STIPPLE_CHECK(blend(plan, frame));
+            STIPPLE_CHECK(blend(plan, frame, late));
             plan.counters.passesRun += 1;
         } else {
             sums_ = SumTarget();
@@ -92,8 +94,8 @@ class Gles3Renderer final : public GlesRenderer {
         STIPPLE_CHECK(checkSize(plan));
         RasterFrame frame = rasterFrame(plan);
         STIPPLE_CHECK(points_.resize(plan.width, plan.height));
-        glBindFramebuffer(GL_FRAMEBUFFER, points_.framebuffer.id());
-        STIPPLE_CHECK(drawPoints(plan, frame));
+        bool late = expandsLate(plan, frame, expansionCosts);
+        STIPPLE_CHECK(drawPoints(plan, frame, late, points_.framebuffer.id()));
         nodes_.endFrame();
         return depthReader_.read(frame, points_.depth.id());
     }
@@ -112,7 +114,8 @@ class Gles3Renderer final : public GlesRenderer {
     bool pickPending() const override { return picker_.pending(); }
 
     std::uint64_t gpuBytes() const override {
-        return nodes_.bytes() + points_.bytes() + sums_.bytes() + octree_.bytes() + 4ull * gradientEntries;
+        return nodes_.bytes() + points_.bytes() + centres_.bytes() + sums_.bytes() + octree_.bytes() +
+               4ull * gradientEntries;
     }
 
     std::string_view limitation() const override { return limitation_; }
@@ -153,14 +156,30 @@ class Gles3Renderer final : public GlesRenderer {
         loadedGradient_ = name;
     }
 
-    Status drawPoints(const FramePlan& plan, const RasterFrame& frame) {
+    // The nearest points, in their sizes, into `target`.
+    Status drawPoints(const FramePlan& plan, const RasterFrame& frame, bool late, GLuint target) {
+        if (!late) {
+            centres_ = CentreTarget();
+            glBindFramebuffer(GL_FRAMEBUFFER, target);
+            clear(plan);
+            return drawNodes(plan, frame, drawOrder(plan), {});
+        }
+        STIPPLE_CHECK(centres_.resize(plan.width, plan.height));
+        glBindFramebuffer(GL_FRAMEBUFFER, centres_.framebuffer.id());
+        clear(plan);
+        STIPPLE_CHECK(drawNodes(plan, frame, drawOrder(plan), {.collects = true}));
+        glBindFramebuffer(GL_FRAMEBUFFER, target);
+        clear(plan);
+        return drawExpanded(frame, {});
+    }
+
+    void clear(const FramePlan& plan) {
         const auto& background = plan.style.background;
         glViewport(0, 0, plan.width, plan.height);
         setPointState();
         glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
         glClearDepthf(1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        return drawNodes(plan, frame, drawOrder(plan), {});
     }
 
     static void setPointState() {
@@ -175,8 +194,28 @@ class Gles3Renderer final : public GlesRenderer {
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
 
+    // One vertex for each pixel, most often a point: what drawPoints() collected.
+    Status drawExpanded(const RasterFrame& frame, PointVariant variant) {
+        variant.circle = frame.circle;
+        variant.expand = true;
+        STIPPLE_TRY(program, pointPrograms_.get(variant));
+        program->useFor(frame);
+        auto bind = [](int unit, GLuint texture) {
+            glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+            glBindTexture(GL_TEXTURE_2D, texture);
+        };
+        bind(centreColoursUnit, centres_.colour.id());
+        bind(centreDepthsUnit, centres_.depth.id());
+        bind(centrePlacesUnit, centres_.place.id());
+        glBindVertexArray(emptyArray_.id());
+        glDrawArrays(GL_POINTS, 0, frame.width * frame.height);
+        for (int unit : {centreColoursUnit, centreDepthsUnit, centrePlacesUnit})
+            bind(unit, 0);
+        return {};
+    }
+
     // The second pass of splats, over the depths of the first.
-    Status blend(const FramePlan& plan, const RasterFrame& frame) {
+    Status blend(const FramePlan& plan, const RasterFrame& frame, bool late) {
         STIPPLE_CHECK(sums_.resize(plan.width, plan.height, floatBlending_));
         glBindFramebuffer(GL_FRAMEBUFFER, sums_.framebuffer.id());
         glClearColor(0, 0, 0, 0);
@@ -187,7 +226,8 @@ class Gles3Renderer final : public GlesRenderer {
         glBlendFunc(GL_ONE, GL_ONE);
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, points_.depth.id());
-        Status drawn = drawNodes(plan, frame, drawOrder(plan), {.blends = true});
+        Status drawn = late ? drawExpanded(frame, {.blend = true})
+                            : drawNodes(plan, frame, drawOrder(plan), {.blends = true});
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, 0);
         glDisable(GL_BLEND);
@@ -198,6 +238,7 @@ class Gles3Renderer final : public GlesRenderer {
     // they are, by their node's place in the order.
     struct Drawing {
         bool blends = false;
+        bool collects = false; // the first pass of delayed expansion
         const PickWindow* identities = nullptr;
     };
 
@@ -221,6 +262,8 @@ class Gles3Renderer final : public GlesRenderer {
             PointVariant variant = PointVariant::of(frame, *node.node);
             variant.blend = how.blends;
             variant.identity = how.identities != nullptr;
+            variant.collect = how.collects;
+            variant.circle = variant.circle && !how.collects;
             STIPPLE_TRY(program, pointPrograms_.get(variant));
             if (program != inUse)
                 program->useFor(frame);
@@ -261,7 +304,8 @@ class Gles3Renderer final : public GlesRenderer {
     std::optional<GradientName> loadedGradient_;
     VertexArray emptyArray_;
     PointTarget points_;
-    SumTarget sums_; // splats
+    CentreTarget centres_; // delayed expansion
+    SumTarget sums_;       // splats
     FloatBlending floatBlending_ = FloatBlending::none;
     std::string_view limitation_;
     NodeBuffers nodes_;

@@ -1,5 +1,6 @@
 #include "client/render/gles_targets.hpp"
 
+#include <array>
 #include <string_view>
 
 namespace stipple::gles {
@@ -30,6 +31,30 @@ Status PointTarget::resize(int newWidth, int newHeight) {
         *this = PointTarget();
         return Error{ErrorCode::unsupported, "the driver refuses a framebuffer of RGBA8 and 32-bit depth",
                      "OpenGL ES 3.0", ""};
+    }
+    return {};
+}
+
+Status CentreTarget::resize(int newWidth, int newHeight) {
+    if (framebuffer && newWidth == width && newHeight == height)
+        return {};
+    makeTexture(colour, GL_RGBA8, newWidth, newHeight);
+    makeTexture(place, GL_R32UI, newWidth, newHeight);
+    makeTexture(depth, GL_DEPTH_COMPONENT32F, newWidth, newHeight);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.make());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour.id(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, place.id(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth.id(), 0);
+    const std::array<GLenum, 2> attachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
+    width = newWidth;
+    height = newHeight;
+    STIPPLE_CHECK(checkGl("making the buffers of delayed expansion"));
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+        *this = CentreTarget();
+        return Error{ErrorCode::unsupported,
+                     "the driver refuses a framebuffer of RGBA8, R32UI and 32-bit depth", "OpenGL ES 3.0",
+                     ""};
     }
     return {};
 }

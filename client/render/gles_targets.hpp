@@ -26,6 +26,20 @@ struct PointTarget {
     Status resize(int newWidth, int newHeight);
 };
 
+// The nearest points as single pixels, for delayed expansion: colour, place and size (expand.vert.glsl),
+// depth.
+struct CentreTarget {
+    Framebuffer framebuffer;
+    Texture colour, place, depth;
+    int width = 0, height = 0;
+
+    std::uint64_t bytes() const {
+        return 12ull * static_cast<unsigned>(width) * static_cast<unsigned>(height);
+    }
+    // Error: unsupported, where the driver refuses such buffers.
+    Status resize(int newWidth, int newHeight);
+};
+
 FloatBlending floatBlending(); // of the current context
 
 // Sums of weighted colours, and of weights in alpha.

@@ -150,6 +150,25 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     return frame;
 }
 
+bool expandsLate(const FramePlan& plan, const RasterFrame& frame, const ExpansionCosts& costs) {
+    bool sized = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
+    if ((sized ? frame.maxSize64 : frame.size64) == sizeSteps)
+        return false;
+    if (plan.style.delayedExpansion != DelayedExpansion::automatic)
+        return plan.style.delayedExpansion == DelayedExpansion::on;
+    double points = 0, pixels = double{1} * plan.width * plan.height;
+    for (const DrawNode& node : plan.nodes)
+        points += node.pointCount;
+    return points > pixels * (frame.splats ? costs.pointsPerPixelSplats : costs.pointsPerPixel);
+}
+
+RasterFrame singlePixelFrame(const RasterFrame& frame) {
+    RasterFrame single = frame;
+    single.size64 = sizeSteps;
+    single.sizeByDistance = single.sizeByDensity = single.adaptive = single.circle = single.splats = false;
+    return single;
+}
+
 RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
     const Style& style = plan.style;
     RasterNode raster;

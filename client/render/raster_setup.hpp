@@ -41,6 +41,10 @@
 //            With d of the point's step, the blended step is that of
 //              d - (radius + factor · d), at least near      radius = size64 · radiusScale · d; orthographic:
 //                                                            without "d"
+// Expansion  delayed: each point is a single pixel first, that of its place, and the nearest of each pixel
+// stays. These
+//            are then drawn with their sizes and exact places; among equal steps the one comes first whose
+//            pixel does, from left to right, rows from the bottom.
 #pragma once
 
 #include "client/core/frame_plan.hpp"
@@ -133,6 +137,16 @@ inline std::uint32_t blendedStep(const RasterFrame& frame, std::uint32_t step, i
     float back = distance - (radius + frame.blendFactor * distance);
     return (floatBits(back > frame.near ? back : frame.near) - frame.nearBits) >> frame.depthShift;
 }
+
+// From how many points per pixel of the picture on delayed expansion pays, in a rasterizer: measured
+// (docs/MEASUREMENTS.md).
+struct ExpansionCosts {
+    double pointsPerPixel = 0, pointsPerPixelSplats = 0;
+};
+// Whether the plan's points are to be expanded late. Never where all are single pixels.
+bool expandsLate(const FramePlan& plan, const RasterFrame& frame, const ExpansionCosts& costs);
+// The frame with points of a pixel each.
+RasterFrame singlePixelFrame(const RasterFrame& frame);
 
 // Both sides of the plan must be in 1..maxPictureSide.
 RasterFrame rasterFrame(const FramePlan& plan);

@@ -5,6 +5,7 @@ namespace stipple::shader_texts {
 
 extern const char* const octree;
 extern const char* const sprite;
+extern const char* const expandVertex;
 extern const char* const pointsVertex;
 extern const char* const pointsFragment;
 extern const char* const resolveVertex;

@@ -26,10 +26,10 @@ STIPPLE_INLINE void offer(std::uint64_t& cell, std::uint64_t candidate) {
     }
 }
 
-template <bool Shared>
-void placeSingle(const Block& block, std::size_t count, std::uint64_t index, std::uint64_t* cells) {
+template <bool Shared, class Indices>
+void placeSingle(const Block& block, std::size_t count, const Indices& index, std::uint64_t* cells) {
     for (std::size_t i = 0; i < count; ++i)
-        offer<Shared>(cells[block.pixel[i]], (std::uint64_t{block.step[i]} << indexBits) | (index + i));
+        offer<Shared>(cells[block.pixel[i]], (std::uint64_t{block.step[i]} << indexBits) | index(i));
 }
 
 // A square or circle of any size.
@@ -64,14 +64,14 @@ STIPPLE_INLINE void placeSmall(int x, int y, int column, int row, const RasterFr
 }
 static_assert(2 * 128 > 181);
 
-template <bool Shared, bool Circle, int N>
-void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+template <bool Shared, bool Circle, int N, class Indices>
+void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                      std::uint64_t* cells) {
     constexpr int half = N * 128;
     for (std::size_t i = 0; i < count; ++i) {
         int x = 2 * block.x[i] + 1, y = 2 * block.y[i] + 1;
         int column = firstCovered(x, half), row = firstCovered(y, half);
-        std::uint64_t candidate = (std::uint64_t{block.step[i]} << indexBits) | (index + i);
+        std::uint64_t candidate = (std::uint64_t{block.step[i]} << indexBits) | index(i);
         bool within = static_cast<unsigned>(column) <= static_cast<unsigned>(frame.width - N) &&
                       static_cast<unsigned>(row) <= static_cast<unsigned>(frame.height - N) &&
                       frame.width >= N && frame.height >= N;
@@ -82,8 +82,8 @@ void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t c
     }
 }
 
-template <bool Shared>
-void placeSprites(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+template <bool Shared, class Indices>
+void placeSprites(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                   std::uint64_t* cells) {
     const bool sized = sizesDiffer(frame);
     for (std::size_t i = 0; i < count; ++i) {
@@ -91,12 +91,12 @@ void placeSprites(const RasterFrame& frame, const Block& block, std::size_t coun
             continue;
         int size64 = sized ? block.size64[i] : frame.size64;
         placeSprite<Shared>(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, 2 * size64,
-                            (std::uint64_t{block.step[i]} << indexBits) | (index + i), cells);
+                            (std::uint64_t{block.step[i]} << indexBits) | index(i), cells);
     }
 }
 
-template <bool Shared>
-void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count, std::uint64_t index,
+template <bool Shared, class Indices>
+void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                 std::uint64_t* cells) {
     switch (frame.size64) {
     case 2 * sizeSteps:
@@ -113,6 +113,17 @@ void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count,
     }
 }
 
+template <bool Shared, class Indices>
+void placeBlock(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
+                const Indices& index, std::uint64_t* cells) {
+    if (sizing == Sizing::single)
+        placeSingle<Shared>(block, count, index, cells);
+    else if (sizesDiffer(frame))
+        placeSprites<Shared>(frame, block, count, index, cells);
+    else
+        placeFixed<Shared>(frame, block, count, index, cells);
+}
+
 template <bool Shared>
 void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells) {
     Block block;
@@ -120,13 +131,9 @@ void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* c
     for (std::uint32_t done = 0; done < run.count; done += blockPoints) {
         std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
         fillBlock(frame, run, done, count, sizing, block);
-        std::uint64_t index = run.index + done;
-        if (sizing == Sizing::single)
-            placeSingle<Shared>(block, count, index, cells);
-        else if (sizing != Sizing::fixed || frame.continuous)
-            placeSprites<Shared>(frame, block, count, index, cells);
-        else
-            placeFixed<Shared>(frame, block, count, index, cells);
+        const std::uint64_t first = run.index + done;
+        placeBlock<Shared>(
+            frame, block, count, sizing, [first](std::size_t i) { return first + i; }, cells);
     }
 }
 
@@ -145,6 +152,15 @@ void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells
         drawRunImpl<true>(frame, run, cells);
     else
         drawRunImpl<false>(frame, run, cells);
+}
+
+void placeListed(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
+                 const std::uint32_t* indices, std::uint64_t* cells, bool shared) {
+    auto index = [indices](std::size_t i) { return std::uint64_t{indices[i]}; };
+    if (shared)
+        placeBlock<true>(frame, block, count, sizing, index, cells);
+    else
+        placeBlock<false>(frame, block, count, sizing, index, cells);
 }
 
 } // namespace stipple

@@ -37,5 +37,8 @@ void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, 
 // Draws a run into `cells`: width × height, rows from top to bottom, and one more that must be 0 (points
 // outside the picture go there and never win). With `shared`, other threads may be drawing too.
 void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells, bool shared);
+// The same of a block whose points have indices of their own.
+void placeListed(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
+                 const std::uint32_t* indices, std::uint64_t* cells, bool shared);
 
 } // namespace stipple

@@ -2,6 +2,7 @@
 
 #include "client/render/drawn_octree.hpp"
 #include "client/render/raster_setup.hpp"
+#include "client/render/software_expansion.hpp"
 #include "client/render/software_points.hpp"
 #include "client/render/software_shading.hpp"
 #include "client/render/software_splats.hpp"
@@ -17,6 +18,7 @@ constexpr std::uint32_t runPoints = 16384; // a run is one piece of work: about 
 constexpr int rowsPerPiece = 16;
 // Each needs 32 bytes a pixel.
 constexpr int maxBlendingThreads = 8;
+constexpr ExpansionCosts expansionCosts{1, 0.5};
 
 class CellRenderer final : public SoftwareRenderer {
   public:
@@ -28,12 +30,18 @@ class CellRenderer final : public SoftwareRenderer {
         RasterFrame frame = frame_ = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
         placeNodes(plan, drawOrder(plan));
-        clearRows(0, image_.height);
-        drawPoints(frame);
+        bool late = expandsLate(plan, frame, expansionCosts);
+        makeRuns();
+        if (late)
+            drawExpanded(frame);
+        else
+            drawWhole(frame, cells_);
         if (frame.splats)
-            blend(plan, frame);
+            blend(plan, frame, late);
+        if (late)
+            byRows([&](int y) { nameExpandedRow(frame, centres(), y, cells_.data()); });
         colour(plan, frame, edl);
-        plan.counters.passesRun += frame.splats ? 3 : 2;
+        plan.counters.passesRun += 2 + (frame.splats ? 1 : 0) + (late ? 1 : 0);
         if (edl.enabled)
             byRows([&](int y) { shadeRow(edl, distances_, y, image_); });
         ++(edl.enabled ? plan.counters.passesRun : plan.counters.passesSkipped);
@@ -56,10 +64,11 @@ class CellRenderer final : public SoftwareRenderer {
         placeNodes(plan, target.order);
         // Elsewhere the cells keep what they held, and nobody looks at them.
         int top = image_.height - target.window.bottom;
-        clearRows(top - target.window.height, top);
-        drawPoints(target.frame);
+        clearRows(cells_, top - target.window.height, top);
+        makeRuns();
+        drawPoints(target.frame, cells_);
         std::vector<PickSample> samples = samplesIn(target.window);
-        clearRows(0, image_.height); // the last picture is gone
+        clearRows(cells_, 0, image_.height); // the last picture is gone
         return nearestHit(target, samples);
     }
 
@@ -99,12 +108,19 @@ class CellRenderer final : public SoftwareRenderer {
         return drawable;
     }
 
+    std::size_t rowPieces() const {
+        return static_cast<std::size_t>((image_.height + rowsPerPiece - 1) / rowsPerPiece);
+    }
+    RowRange rowsOf(std::size_t piece) const {
+        int first = static_cast<int>(piece) * rowsPerPiece;
+        return {first, std::min(first + rowsPerPiece, image_.height)};
+    }
+
     template <class Row>
     void byRows(const Row& row) {
-        auto pieces = static_cast<std::size_t>((image_.height + rowsPerPiece - 1) / rowsPerPiece);
-        workers_.run(pieces, [&](std::size_t piece) {
-            int first = static_cast<int>(piece) * rowsPerPiece;
-            for (int y = first; y < std::min(first + rowsPerPiece, image_.height); ++y)
+        workers_.run(rowPieces(), [&](std::size_t piece) {
+            RowRange rows = rowsOf(piece);
+            for (int y = rows.first; y < rows.end; ++y)
                 row(y);
         });
     }
@@ -122,16 +138,16 @@ class CellRenderer final : public SoftwareRenderer {
         }
     }
 
-    void clearRows(int first, int end) {
+    void clearRows(std::vector<std::uint64_t>& cells, int first, int end) {
         byRows([&](int y) {
             auto width = static_cast<std::size_t>(image_.width);
             if (y >= first && y < end)
-                std::fill_n(cells_.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width),
+                std::fill_n(cells.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width),
                             width, emptyCell);
         });
     }
 
-    void drawPoints(const RasterFrame& frame) {
+    void makeRuns() {
         runs_.clear();
         runNodes_.clear();
         for (const PlacedNode& placed : nodes_)
@@ -141,21 +157,46 @@ class CellRenderer final : public SoftwareRenderer {
                                  std::min(runPoints, placed.draw->pointCount - first),
                                  placed.firstIndex + first, octree_.words.data(), placed.octreePlace});
             }
+    }
+
+    void drawWhole(const RasterFrame& frame, std::vector<std::uint64_t>& cells) {
+        clearRows(cells, 0, image_.height);
+        drawPoints(frame, cells);
+    }
+
+    void drawPoints(const RasterFrame& frame, std::vector<std::uint64_t>& cells) {
         bool shared = workers_.threads() > 1;
-        workers_.run(runs_.size(), [&](std::size_t i) { drawRun(frame, runs_[i], cells_.data(), shared); });
+        workers_.run(runs_.size(), [&](std::size_t i) { drawRun(frame, runs_[i], cells.data(), shared); });
+    }
+
+    Centres centres() const { return {&nodes_, octree_.words.data(), centres_.data()}; }
+
+    void drawExpanded(const RasterFrame& frame) {
+        centres_.resize(cells_.size());
+        centres_.back() = 0;
+        drawWhole(singlePixelFrame(frame), centres_);
+        clearRows(cells_, 0, image_.height);
+        bool shared = workers_.threads() > 1;
+        workers_.run(rowPieces(), [&](std::size_t piece) {
+            expandRows(frame, centres(), rowsOf(piece), cells_.data(), shared);
+        });
     }
 
     // Each thread adds to sums of its own.
-    void blend(const FramePlan& plan, const RasterFrame& frame) {
+    void blend(const FramePlan& plan, const RasterFrame& frame, bool late) {
         std::size_t pixels = image_.rgba.size() / 4;
         sums_.resize(static_cast<std::size_t>(std::min(workers_.threads(), maxBlendingThreads)));
         std::atomic<std::size_t> next{0};
+        std::size_t pieces = late ? rowPieces() : runs_.size();
         const GradientTable& gradient = gradientTable(plan.style.gradient);
         workers_.run(sums_.size(), [&](std::size_t thread) {
             std::vector<PixelSums>& sums = sums_[thread];
             sums.assign(pixels, {});
-            for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < runs_.size();)
-                blendRun(frame, *runNodes_[i], gradient, runs_[i], cells_.data(), sums.data());
+            for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)
+                if (late)
+                    blendExpandedRows(frame, centres(), gradient, rowsOf(i), cells_.data(), sums.data());
+                else
+                    blendRun(frame, *runNodes_[i], gradient, runs_[i], cells_.data(), sums.data());
         });
     }
 
@@ -177,7 +218,8 @@ class CellRenderer final : public SoftwareRenderer {
     Image image_;
     RasterFrame frame_; // of image_
     std::vector<std::uint64_t> cells_;
-    DrawnOctree octree_; // adaptive sizes
+    std::vector<std::uint64_t> centres_; // points as single pixels: delayed expansion
+    DrawnOctree octree_;                 // adaptive sizes
     std::vector<PlacedNode> nodes_;
     std::vector<PointRun> runs_;
     std::vector<const PlacedNode*> runNodes_;  // parallel to runs_

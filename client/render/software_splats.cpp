@@ -23,6 +23,8 @@ STIPPLE_INLINE void add(PixelSums& sums, std::uint32_t colour, std::uint64_t wei
     sums.weight += weight;
 }
 
+} // namespace
+
 void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
                 const std::uint64_t* cells, PixelSums* sums) {
     const bool sized = sizesDiffer(frame);
@@ -38,8 +40,6 @@ void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count,
         });
     }
 }
-
-} // namespace
 
 void blendRun(const RasterFrame& frame, const PlacedNode& placed, const GradientTable& gradient,
               const PointRun& run, const std::uint64_t* cells, PixelSums* sums) {

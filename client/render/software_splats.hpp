@@ -20,6 +20,10 @@ struct alignas(32) PixelSums {
 void blendRun(const RasterFrame& frame, const PlacedNode& placed, const GradientTable& gradient,
               const PointRun& run, const std::uint64_t* cells, PixelSums* sums);
 
+// The same of a block of points in these colours. No size may be `single`.
+void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
+                const std::uint64_t* cells, PixelSums* sums);
+
 // Row `y` (from the top) of the picture from several arrays of sums; `distances` (from `cells`) is filled too
 // unless it is nullptr.
 void blendedRow(const FramePlan& plan, const RasterFrame& frame, std::span<const PixelSums* const> sums,

@@ -31,6 +31,10 @@ STIPPLE_INLINE float clampFloat(float value, float low, float high) {
     return value > high ? high : value;
 }
 
+STIPPLE_INLINE std::uint32_t rankOf(const std::uint32_t* ranks, std::uint32_t first, std::size_t i) {
+    return ranks != nullptr ? ranks[i] : first + static_cast<std::uint32_t>(i);
+}
+
 // X of raster_setup.hpp, "Deep nodes".
 struct Wrapping {
     const std::uint32_t lowA, lowB, lowC, highA, highB, highC, origin;
@@ -84,6 +88,7 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const float worldSize64 = frame.worldSize64, nodeSize64 = node.nodeSize64;
     const auto minSize64 = static_cast<float>(frame.minSize64),
                maxSize64 = static_cast<float>(frame.maxSize64);
+    const std::uint32_t* ranks = words.ranks;
     const float rankBase = node.rankBase, rankStep = node.rankStep, growth = frame.growth;
     const float falloffX = frame.falloffX, falloffY = frame.falloffY, leastDensity = frame.leastDensity;
     const auto fixedSize64 = static_cast<float>(frame.size64);
@@ -120,8 +125,7 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
         if constexpr (Rank == Ranking::continuous) {
             const float offX = x * falloffX, offY = y * falloffY;
             density = clampFloat(1.0f - std::sqrt(offX * offX + offY * offY), leastDensity, 1.0f);
-            const auto rank =
-                static_cast<float>(static_cast<std::int32_t>(words.rank + static_cast<std::uint32_t>(i)));
+            const auto rank = static_cast<float>(static_cast<std::int32_t>(rankOf(ranks, words.rank, i)));
             float q = (rankBase + rankStep * rank) / (density * density);
             if constexpr (Place == Placing::perspective)
                 q = q * (d * d);

@@ -31,8 +31,9 @@ inline bool sizesDiffer(const RasterFrame& frame) {
 
 struct Words {
     const std::uint32_t* position;
-    const std::uint32_t* low; // nullptr: no low words
-    std::uint32_t rank;       // of the first point in its node
+    const std::uint32_t* low;             // nullptr: no low words
+    std::uint32_t rank;                   // of the first point in its node
+    const std::uint32_t* ranks = nullptr; // of each point in its node; nullptr: one after another from `rank`
 };
 
 inline Words wordsFrom(const ResidentNode& node, std::size_t first) {

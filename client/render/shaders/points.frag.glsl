@@ -23,6 +23,10 @@ uniform ivec2 uWindow;                   // lower left pixel
 layout(location = 0) out uvec4 outPoint; // node, point, depth step, 1
 #else
 layout(location = 0) out vec4 outColour;
+#ifdef COLLECT
+flat in uint vPlace;
+layout(location = 1) out uint outPlace;
+#endif
 #endif
 
 vec2 pixelCentre() {
@@ -64,5 +68,8 @@ void main() {
     outColour = vec4(vColour.rgb * weight, weight);
 #else
     outColour = vec4(vColour.rgb, 1.0);
+#endif
+#ifdef COLLECT
+    outPlace = vPlace;
 #endif
 }

@@ -1,8 +1,8 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
 // Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE (with
-// the text of octree.glsl) for sizes from the octree; CAPTURE_LEVELS to tell the level found there;
-// IDENTITY where it is asked which point a pixel shows.
+// the text of octree.glsl) for sizes from the octree; COLLECT for the first pass of delayed expansion; CAPTURE_LEVELS to
+// tell the level found there; IDENTITY where it is asked which point a pixel shows.
 precision highp float;
 precision highp int;
 precision highp sampler2D;
@@ -45,6 +45,9 @@ uniform sampler2D uGradient;
 uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
 #endif
 
+#ifdef COLLECT
+flat out uint vPlace; // expand.vert.glsl, uCentrePlaces
+#endif
 #ifdef CAPTURE_LEVELS
 flat out int vLevels;
 #endif
@@ -145,6 +148,10 @@ void main() {
     uint step = (floatBitsToUint(d) - uNearBits) >> uDepthShift;
 #ifdef IDENTITY
     vPoint = uvec2(uint(gl_VertexID), step);
+#endif
+#ifdef COLLECT
+    vPlace = uint(cell.x & 127) | uint(cell.y & 127) << 7 | uint(size64) << 14;
+    size64 = 64.0;
 #endif
     placePoint(cell, floor(size64), step);
 }

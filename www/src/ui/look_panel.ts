@@ -132,6 +132,17 @@ export class LookPanel extends ModelElement {
                 ],
                 (shape) => this.model.changeStyle({ shape }),
             )}
+            ${choice(
+                'Expand late',
+                'delayed-expansion',
+                style.delayedExpansion,
+                [
+                    ['off', 'Off'],
+                    ['auto', 'Auto'],
+                    ['on', 'On'],
+                ],
+                (delayedExpansion) => this.model.changeStyle({ delayedExpansion }),
+            )}
             <label class="row">
                 <span>Blend</span>
                 <span>

@@ -25,6 +25,7 @@ export interface Style {
     minSizePixels: number;
     maxSizePixels: number;
     shape: 'square' | 'circle';
+    delayedExpansion: 'off' | 'on' | 'auto';
     splats: { enabled: boolean; hardness: number; depthFactor: number };
     detail: {
         mode: 'discrete' | 'continuous';

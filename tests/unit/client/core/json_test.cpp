@@ -35,6 +35,7 @@ TEST_CASE("a style survives the way to JSON and back") {
     style.elevationRange = {-3, 7.5};
     style.sizeMode = PointSizeMode::world;
     style.splats = {true, 7, 0.25};
+    style.delayedExpansion = DelayedExpansion::automatic;
     style.sizeWorld = 0.25;
     style.shape = PointShape::square;
     style.edl = {false, 4, 2.5, 1.25};

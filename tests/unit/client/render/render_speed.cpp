@@ -1,6 +1,8 @@
-// Points a second of both rasterizers on made-up nodes: client_render_speed [POINTS_MILLION] [WIDTH HEIGHT].
-// Points lie on a rough ground seen from above at an angle, in nodes of 40,000, as a scan does.
+// Points a second of both rasterizers on made-up nodes: client_render_speed [POINTS_MILLION] [WIDTH HEIGHT]
+// [GLES 1 or 0]. Points lie on a rough ground seen from above at an angle, in nodes of 40,000, as a scan
+// does. Then what delayed expansion gains and how far its picture is from that of drawing at once.
 #include "client/headless/egl_context.hpp"
+#include "client/measure/pixel_error.hpp"
 #include "client/render/gles_renderer.hpp"
 #include "client/render/software_renderer.hpp"
 #include "tests/support/test_plan.hpp"
@@ -25,6 +27,9 @@ std::vector<TestNode> ground(int nodesAcross) {
     for (int i = 0; i < nodesAcross * nodesAcross; ++i) {
         TestNode node;
         node.nodeBits = 12; // 41 m
+        node.key = {12, static_cast<std::uint32_t>(i % nodesAcross),
+                    static_cast<std::uint32_t>(i / nodesAcross), 0};
+        node.spacing = 0.2;
         node.corner = {(i % nodesAcross - nodesAcross / 2) * 40.96,
                        (i / nodesAcross - nodesAcross / 2) * 40.96, 0};
         for (int p = 0; p < 40000; ++p) {
@@ -62,16 +67,86 @@ double bestSeconds(Clock clock, int runs, const std::function<void()>& work) {
 
 struct Case {
     const char* name;
-    double pixels;
-    PointShape shape;
-    bool edl, world;
+    Style style;
 };
+
+std::vector<Case> casesFor(double half) {
+    std::vector<Case> cases;
+    auto add = [&](const char* name, double pixels, PointShape shape, auto change) {
+        Style style;
+        style.sizePixels = pixels;
+        style.shape = shape;
+        style.edl.enabled = false;
+        change(style);
+        cases.push_back({name, style});
+    };
+    constexpr auto asIs = [](Style&) {};
+    constexpr auto lit = [](Style& style) { style.edl.enabled = true; };
+    constexpr auto blended = [](Style& style) { style.splats.enabled = true; };
+    add("1 px", 1, PointShape::square, asIs);
+    add("1 px, EDL 8", 1, PointShape::square, lit);
+    add("2 px square", 2, PointShape::square, asIs);
+    add("2 px circle", 2, PointShape::circle, asIs);
+    add("2 px circle, EDL 8", 2, PointShape::circle, lit);
+    add("3 px square", 3, PointShape::square, asIs);
+    add("3 px circle", 3, PointShape::circle, asIs);
+    add("4 px circle", 4, PointShape::circle, asIs);
+    add("2.5 px circle", 2.5, PointShape::circle, asIs);
+    add("world size circle", 1, PointShape::circle, [half](Style& style) {
+        style.sizeMode = PointSizeMode::world;
+        style.sizeWorld = half / 200;
+    });
+    add("adaptive circle", 1, PointShape::circle, [](Style& style) {
+        style.sizeMode = PointSizeMode::adaptive;
+        style.sizeSpacings = 1;
+    });
+    add("2 px splats", 2, PointShape::circle, blended);
+    add("3 px splats", 3, PointShape::circle, blended);
+    add("3 px splats, EDL 8", 3, PointShape::circle,
+        [](Style& style) { style.splats.enabled = style.edl.enabled = true; });
+    return cases;
+}
+
+// Either rasterizer, drawing a plan once.
+using Draw = std::function<Image(FramePlan&)>;
+
+void compareExpansion(const char* name, const Draw& draw, const std::vector<TestNode>& nodes,
+                      const TestView& view, Clock clock, int runs) {
+    struct Kind {
+        const char* name;
+        double pixels;
+        bool splats;
+    };
+    for (const Kind& kind : {Kind{"2 px circle", 2, false},
+                             {"3 px circle", 3, false},
+                             {"5 px circle", 5, false},
+                             {"2 px splats", 2, true},
+                             {"3 px splats", 3, true},
+                             {"5 px splats", 5, true}}) {
+        Style style;
+        style.sizePixels = kind.pixels;
+        style.edl.enabled = false;
+        style.splats.enabled = kind.splats;
+        FramePlan atOnce = testPlan(nodes, view, style);
+        style.delayedExpansion = DelayedExpansion::on;
+        FramePlan late = testPlan(nodes, view, style);
+        double slow = 1e9, quick = 1e9; // interleaved
+        for (int i = 0; i < runs; ++i) {
+            slow = std::min(slow, bestSeconds(clock, 1, [&] { draw(atOnce); }));
+            quick = std::min(quick, bestSeconds(clock, 1, [&] { draw(late); }));
+        }
+        double error = measure::pixelError(draw(atOnce), draw(late)).mean;
+        std::printf("%-9s %-12s %10.1f ms %10.1f ms %+8.0f %% frames, mean error %.2f levels (%.2f %%)\n",
+                    name, kind.name, 1e3 * slow, 1e3 * quick, 100 * (slow / quick - 1), error, error / 2.55);
+    }
+}
 
 } // namespace
 
 int main(int argc, char** argv) {
     double million = argc > 1 ? std::atof(argv[1]) : 4;
     int width = argc > 3 ? std::atoi(argv[2]) : 1280, height = argc > 3 ? std::atoi(argv[3]) : 720;
+    bool withGles = argc <= 4 || std::atoi(argv[4]) != 0;
     int nodesAcross = std::max(1, static_cast<int>(std::lround(std::sqrt(million * 1e6 / 40000))));
     std::vector<TestNode> nodes = ground(nodesAcross);
     double points = 40000.0 * nodesAcross * nodesAcross;
@@ -83,31 +158,17 @@ int main(int argc, char** argv) {
     view.width = width;
     view.height = height;
 
-    const Case cases[] = {{"1 px", 1, PointShape::square, false, false},
-                          {"1 px, EDL 8", 1, PointShape::square, true, false},
-                          {"2 px square", 2, PointShape::square, false, false},
-                          {"2 px circle", 2, PointShape::circle, false, false},
-                          {"2 px circle, EDL 8", 2, PointShape::circle, true, false},
-                          {"3 px circle", 3, PointShape::circle, false, false},
-                          {"4 px circle", 4, PointShape::circle, false, false},
-                          {"2.5 px circle", 2.5, PointShape::circle, false, false},
-                          {"world size circle", 1, PointShape::circle, false, true}};
     auto context = headless::EglContext::create();
-    auto gles =
-        context.ok() ? GlesRenderer::create() : Result<std::unique_ptr<GlesRenderer>>(context.error());
+    auto gles = context.ok() && withGles
+                    ? GlesRenderer::create()
+                    : Result<std::unique_ptr<GlesRenderer>>(Error{ErrorCode::unsupported, "", "", ""});
     std::printf("%.1f million points, %d x %d; million points a second\n", points * 1e-6, width, height);
     std::printf("%-20s %14s %12s %12s   %s\n", "", "1 thread (CPU)", "1 thread", "2 threads",
-                context.ok() ? (*context)->driver().c_str() : "no GLES");
-    for (const Case& one : cases) {
-        Style style;
-        style.sizePixels = one.pixels;
-        style.shape = one.shape;
-        style.edl.enabled = one.edl;
-        style.sizeMode = one.world ? PointSizeMode::world : PointSizeMode::fixed;
-        style.sizeWorld = half / 200;
-        FramePlan plan = testPlan(nodes, view, style);
+                gles.ok() ? (*context)->driver().c_str() : "no GLES");
+    auto single = SoftwareRenderer::create(1), two = SoftwareRenderer::create(2);
+    for (const Case& one : casesFor(half)) {
+        FramePlan plan = testPlan(nodes, view, one.style);
         std::printf("%-20s", one.name);
-        auto single = SoftwareRenderer::create(1), two = SoftwareRenderer::create(2);
         std::printf(" %14.1f",
                     points * 1e-6 / bestSeconds(Clock::processor, 7, [&] { single->render(plan); }));
         std::printf(" %12.1f", points * 1e-6 / bestSeconds(Clock::wall, 7, [&] { single->render(plan); }));
@@ -122,4 +183,17 @@ int main(int argc, char** argv) {
         }
         std::printf("\n");
     }
+    std::printf("Drawn at once, and with delayed expansion\n");
+    compareExpansion(
+        "software", [&](FramePlan& plan) { return single->render(plan); }, nodes, view, Clock::processor, 3);
+    if (gles.ok())
+        compareExpansion(
+            "gles",
+            [&](FramePlan& plan) {
+                auto target = (*context)->framebuffer(width, height);
+                (void)(*gles)->draw(plan, *target).ok();
+                auto image = (*context)->read();
+                return image.ok() ? *image : Image();
+            },
+            nodes, view, Clock::wall, 1);
 }
