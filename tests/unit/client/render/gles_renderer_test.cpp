@@ -49,7 +49,7 @@ void checkAlike(Gles& gles, FramePlan& plan, const char* what) {
     INFO(what);
     Image software = SoftwareRenderer::create(1)->render(plan);
     measure::PixelError apart = measure::pixelError(software, gles.draw(plan), 2);
-    CHECK(apart.differing * 2000 <= software.rgba.size() / 4);
+    CHECK(apart.differing <= allowedPixels(*gles.context, software.rgba.size() / 4));
 }
 
 } // namespace
