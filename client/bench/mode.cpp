@@ -41,6 +41,8 @@ constexpr const char* table = R"json([
  "style": {"delayedExpansion": "on"}},
 {"name": "splats-delayed", "about": "splats, each pixel's nearest centre first", "sweep": true,
  "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}, "delayedExpansion": "on"}},
+{"name": "paraboloid", "about": "paraboloids of 5 pixels, no lighting",
+ "style": {"sizePixels": 5, "shape": "paraboloid", "edl": {"enabled": false}}},
 {"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
@@ -53,6 +55,8 @@ constexpr const char* table = R"json([
  "style": {"sizePixels": 3, "splats": {"enabled": true}, "edl": {"enabled": false}}},
 {"name": "gles-delayed-expansion", "about": "delayed-expansion, with OpenGL ES", "backend": "gles",
  "style": {"delayedExpansion": "on"}},
+{"name": "gles-paraboloid", "about": "paraboloid, with OpenGL ES", "backend": "gles",
+ "style": {"sizePixels": 5, "shape": "paraboloid", "edl": {"enabled": false}}},
 {"name": "gles-pixels", "about": "pixels, with OpenGL ES", "backend": "gles",
  "style": {"sizePixels": 1, "shape": "square", "edl": {"enabled": false}}}
 ])json";

@@ -45,9 +45,10 @@ constexpr Names<DetailMode, 2> detailModes{{
     {"discrete", DetailMode::discrete},
     {"continuous", DetailMode::continuous},
 }};
-constexpr Names<PointShape, 2> shapes{{
+constexpr Names<PointShape, 3> shapes{{
     {"square", PointShape::square},
     {"circle", PointShape::circle},
+    {"paraboloid", PointShape::paraboloid},
 }};
 constexpr Names<DelayedExpansion, 3> expansions{{
     {"off", DelayedExpansion::off},

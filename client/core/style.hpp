@@ -11,7 +11,9 @@ enum class ColourMode : std::uint8_t { rgb, intensity, elevation };
 // `spacing`: by the target spacing of continuous detail; `adaptive`: by the spacing of the finest drawn node
 // where the point lies (Potree thesis §4.3.3).
 enum class PointSizeMode : std::uint8_t { fixed, world, spacing, adaptive };
-enum class PointShape : std::uint8_t { square, circle };
+// Paraboloids are circles bent away from the camera: where they overlap, each pixel shows the point nearest
+// to it, as a Voronoi diagram does (Potree thesis §4.2.3). Splats take them as circles.
+enum class PointShape : std::uint8_t { square, circle, paraboloid };
 enum class GradientName : std::uint8_t { viridis, turbo, inferno, spectral, grey, terrain };
 
 struct Range {

@@ -17,6 +17,7 @@ double inside(const Mark& mark, double dx, double dy, PointShape shape) {
     case PointShape::square:
         return std::max(radius - farther, holdsMiddle);
     case PointShape::circle:
+    case PointShape::paraboloid:
         return std::max(radius - std::hypot(dx, dy), holdsMiddle);
     }
     return holdsMiddle;
@@ -71,13 +72,30 @@ void Canvas::visitSamples(const Mark& mark, PointShape shape, double slack, cons
         }
 }
 
+namespace {
+
+// How far the mark is at a place so many pixels from its middle.
+double distanceAt(const Mark& mark, double away, PointShape shape) {
+    double share = 2 * away / mark.diameter;
+    double radius = mark.diameter / 2 * mark.unitsPerPixel;
+    bool bends = shape == PointShape::paraboloid && mark.diameter > 1; // single pixels are flat
+    return mark.distance + (bends ? radius * share * share : 0);
+}
+
+} // namespace
+
+PointShape drawnShape(const Style& style) {
+    return style.splats.enabled && style.shape == PointShape::paraboloid ? PointShape::circle : style.shape;
+}
+
 void Canvas::draw(std::span<const Mark> marks, PointShape shape) {
     for (const Mark& mark : marks)
-        visitSamples(mark, shape, 0, [&](std::size_t sample, double, double) {
+        visitSamples(mark, shape, 0, [&](std::size_t sample, double, double away) {
+            double distance = distanceAt(mark, away, shape);
             double held = distances_[sample];
-            if (mark.distance > held || (mark.distance == held && mark.order > orders_[sample]))
+            if (distance > held || (distance == held && mark.order > orders_[sample]))
                 return;
-            distances_[sample] = mark.distance;
+            distances_[sample] = distance;
             orders_[sample] = mark.order;
             colours_[sample] = mark.colour;
         });
@@ -108,7 +126,10 @@ void Canvas::doubt(std::span<const Mark> marks, const Style& style, const Slack&
             }
             bool shown = orders_[sample] == mark.order;
             bool mightLeave = shown && depth < slack.pixels;
-            bool mightCome = !shown && mark.distance < nearest * (1 + slack.distance);
+            // Two paraboloids bend by at most twice a pixel's width a pixel.
+            double bend = style.shape == PointShape::paraboloid ? 4 * mark.unitsPerPixel * slack.pixels : 0;
+            double distance = distanceAt(mark, away, style.shape);
+            bool mightCome = !shown && distance < nearest * (1 + slack.distance) + bend;
             if (mightLeave || mightCome)
                 doubtful_[sample] = true;
         });

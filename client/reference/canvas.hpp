@@ -19,6 +19,9 @@ struct Slack {
     double distance = 4e-6; // relative: 2^-18, the coarsest depth step of a range of 32 octaves
 };
 
+// What the marks of a style are drawn as: splats take paraboloids as circles.
+PointShape drawnShape(const Style& style);
+
 class Canvas {
   public:
     Canvas(int width, int height, int samples = 1);

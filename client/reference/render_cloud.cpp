@@ -66,7 +66,7 @@ Status drawAll(CloudReader& reader, Reading reading, std::vector<std::unique_ptr
             appendMarks(easel->job.view, easel->job.style, points, marks);
             std::lock_guard lock(easel->mutex);
             if (reading == Reading::nearest)
-                easel->canvas.draw(marks, easel->job.style.shape);
+                easel->canvas.draw(marks, drawnShape(easel->job.style));
             else
                 easel->canvas.blend(marks, easel->job.style);
         }

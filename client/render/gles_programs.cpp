@@ -13,6 +13,7 @@ std::string definesFor(const PointVariant& variant) {
     std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
     defines += variant.lowWords ? "#define LOW_WORDS\n" : "";
     defines += variant.circle ? "#define CIRCLE\n" : "";
+    defines += variant.paraboloid ? "#define PARABOLOID\n" : "";
     defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
     defines += variant.collect ? "#define COLLECT\n" : "";
     defines += variant.blend ? "#define BLEND\n" : "";
@@ -29,6 +30,7 @@ PointVariant PointVariant::of(const RasterFrame& frame, const ResidentNode& node
     PointVariant variant;
     variant.lowWords = node.positionShift > 0;
     variant.circle = frame.circle;
+    variant.paraboloid = frame.paraboloid;
     variant.adaptive = frame.adaptive;
     return variant;
 }

@@ -13,6 +13,7 @@ namespace stipple::gles {
 struct PointVariant {
     bool lowWords = false; // nodes with a third position word
     bool circle = false;
+    bool paraboloid = false; // circle, too
     bool adaptive = false;
     bool blend = false;         // the pass of splats that blends
     bool collect = false;       // the first pass of delayed expansion

@@ -197,6 +197,7 @@ class Gles3Renderer final : public GlesRenderer {
     // One vertex for each pixel, most often a point: what drawPoints() collected.
     Status drawExpanded(const RasterFrame& frame, PointVariant variant) {
         variant.circle = frame.circle;
+        variant.paraboloid = frame.paraboloid;
         variant.expand = true;
         STIPPLE_TRY(program, pointPrograms_.get(variant));
         program->useFor(frame);
@@ -264,6 +265,7 @@ class Gles3Renderer final : public GlesRenderer {
             variant.identity = how.identities != nullptr;
             variant.collect = how.collects;
             variant.circle = variant.circle && !how.collects;
+            variant.paraboloid = variant.paraboloid && !how.collects;
             STIPPLE_TRY(program, pointPrograms_.get(variant));
             if (program != inUse)
                 program->useFor(frame);

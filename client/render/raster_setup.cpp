@@ -146,7 +146,8 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     frame.adaptive = style.sizeMode == PointSizeMode::adaptive;
     bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
     bool singlePixels = (sizesDiffer ? frame.maxSize64 : frame.size64) == sizeSteps;
-    frame.circle = style.shape == PointShape::circle && !singlePixels;
+    frame.circle = style.shape != PointShape::square && !singlePixels;
+    frame.paraboloid = style.shape == PointShape::paraboloid && frame.circle && !frame.splats;
     return frame;
 }
 
@@ -166,6 +167,7 @@ RasterFrame singlePixelFrame(const RasterFrame& frame) {
     RasterFrame single = frame;
     single.size64 = sizeSteps;
     single.sizeByDistance = single.sizeByDensity = single.adaptive = single.circle = single.splats = false;
+    single.paraboloid = false;
     return single;
 }
 

@@ -34,6 +34,9 @@
 //            piecewise linear logarithm, monotone, without rounding, under 2^24. The depth buffer holds
 //            q / 2^24. The nearer step wins; among equal steps the point that comes first in drawOrder().
 //            The logarithm of frame_plan.hpp is this one made smooth; eye-dome lighting takes it from q.
+// Paraboloid circles whose pixels are farther than their point: by radius · r² / R² (see "Splats"), r and R
+// in 1/256
+//            pixel, at most far; in the step's d again. Points of a single pixel are flat.
 // Splats     the nearest points are drawn first. Then each pixel's colour is the mean of the points that
 // cover it and
 //            whose blended step is not beyond the nearest one's, weighted by w = (1 - r² / R²)^hardness from
@@ -94,10 +97,11 @@ struct RasterFrame {
     int size64 = 64;             // 1/64 pixel, clamped
     float worldSize64 = 0;       // 1/64 pixel at distance 1
     int minSize64 = 64, maxSize64 = 64;
-    bool adaptive = false; // see "Adaptive"; size64 does not matter
-    bool circle = false;   // false where every point is a single pixel
-    float radiusScale = 0; // half the size in world units, per 1/64 pixel; at distance 1 in perspective
-    bool splats = false;   // see "Splats"
+    bool adaptive = false;   // see "Adaptive"; size64 does not matter
+    bool circle = false;     // false where every point is a single pixel
+    float radiusScale = 0;   // half the size in world units, per 1/64 pixel; at distance 1 in perspective
+    bool paraboloid = false; // circle, too; never with splats
+    bool splats = false;     // see "Splats"
     int hardness = 1;
     float blendFactor = 0;
     bool continuous = false; // continuous detail, see "Detail"
@@ -127,6 +131,22 @@ struct RasterNode {
 // The view distance at which a depth step begins.
 inline float distanceOfStep(const RasterFrame& frame, std::uint32_t step) {
     return floatOfBits((step << frame.depthShift) + frame.nearBits);
+}
+
+// See "Paraboloid": the view distance of a point and how much farther a pixel is by the square of its
+// distance from it in 1/256 pixel.
+struct Bend {
+    float distance, perSquare;
+};
+inline Bend bendOf(const RasterFrame& frame, std::uint32_t step, int size64) {
+    float distance = distanceOfStep(frame, step);
+    float radius = static_cast<float>(size64) * frame.radiusScale, half = static_cast<float>(2 * size64);
+    radius = frame.perspective ? radius * distance : radius;
+    return {distance, size64 > sizeSteps ? radius / (half * half) : 0.0f};
+}
+inline std::uint32_t bentStep(const RasterFrame& frame, const Bend& bend, int away) {
+    float distance = bend.distance + bend.perSquare * static_cast<float>(away);
+    return (floatBits(distance < frame.far ? distance : frame.far) - frame.nearBits) >> frame.depthShift;
 }
 
 // See "Splats". size64: the point's.

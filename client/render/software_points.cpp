@@ -96,6 +96,23 @@ void placeSprites(const RasterFrame& frame, const Block& block, std::size_t coun
 }
 
 template <bool Shared, class Indices>
+void placeParaboloids(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
+                      std::uint64_t* cells) {
+    const bool sized = sizesDiffer(frame);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (block.x[i] == nowhere)
+            continue;
+        int size64 = sized ? block.size64[i] : frame.size64;
+        const Bend bend = bendOf(frame, block.step[i], size64);
+        visitCovered(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, 2 * size64,
+                     [&](std::size_t cell, int away) {
+                         offer<Shared>(cells[cell],
+                                       (std::uint64_t{bentStep(frame, bend, away)} << indexBits) | index(i));
+                     });
+    }
+}
+
+template <bool Shared, class Indices>
 void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                 std::uint64_t* cells) {
     switch (frame.size64) {
@@ -118,6 +135,8 @@ void placeBlock(const RasterFrame& frame, const Block& block, std::size_t count,
                 const Indices& index, std::uint64_t* cells) {
     if (sizing == Sizing::single)
         placeSingle<Shared>(block, count, index, cells);
+    else if (frame.paraboloid)
+        placeParaboloids<Shared>(frame, block, count, index, cells);
     else if (sizesDiffer(frame))
         placeSprites<Shared>(frame, block, count, index, cells);
     else

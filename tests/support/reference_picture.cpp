@@ -73,7 +73,7 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
         appendMarks(viewOf(view), style, cloud.points, marks);
     }
     reference::Canvas canvas(view.width, view.height, samples);
-    canvas.draw(marks, style.shape);
+    canvas.draw(marks, reference::drawnShape(style));
     if (style.splats.enabled)
         canvas.blend(marks, style);
     canvas.doubt(marks, style, slack);

@@ -10,6 +10,12 @@ flat in vec4 vColour;
 #ifdef CENTRED
 flat in ivec3 vDisc;
 #endif
+#ifdef PARABOLOID
+flat in vec2 vBend;
+uniform vec2 uNearFar;
+uniform uint uNearBits;
+uniform int uDepthShift;
+#endif
 #ifdef BLEND
 flat in uint vBlended;
 uniform sampler2D uNearest; // depth of the nearest points
@@ -58,7 +64,14 @@ void main() {
         discard;
 #endif
 #endif
-#ifdef IDENTITY
+#ifdef PARABOLOID
+    float bent = min(vBend.x + vBend.y * float(away), uNearFar.y);
+    uint bentStep = (floatBitsToUint(bent) - uNearBits) >> uDepthShift;
+    gl_FragDepth = float(bentStep) * (1.0 / 16777216.0);
+#endif
+#if defined(IDENTITY) && defined(PARABOLOID)
+    outPoint = uvec4(uNode, vPoint.x, bentStep, 1u);
+#elif defined(IDENTITY)
     outPoint = uvec4(uNode, vPoint, 1u);
 #elif defined(BLEND)
     uint nearest = uint(texelFetch(uNearest, ivec2(gl_FragCoord.xy), 0).r * 16777216.0);

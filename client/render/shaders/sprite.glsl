@@ -1,6 +1,6 @@
 // From a point's place in the picture to a square of the window, and what its pixels need to know of it: the end of
 // points.vert.glsl and expand.vert.glsl. The rules: client/render/raster_setup.hpp.
-// Defined before this text: CENTRED where pixels need the point's middle; BLEND in the pass of splats that blends.
+// Defined before this text: CENTRED where pixels need the point's middle; PARABOLOID; BLEND in the pass of splats that blends.
 precision highp float;
 precision highp int;
 
@@ -14,8 +14,13 @@ flat out vec4 vColour;
 #ifdef CENTRED
 flat out ivec3 vDisc; // centre in 1/256 pixel, squared radius in (1/256 pixel)²
 #endif
-#ifdef BLEND
+#ifdef PARABOLOID
+flat out vec2 vBend; // raster_setup.hpp, "Paraboloid": distance, and what is added by (1/256 pixel)²
+#endif
+#if defined(BLEND) || defined(PARABOLOID)
 uniform float uRadiusScale;
+#endif
+#ifdef BLEND
 uniform float uBlendFactor;
 flat out uint vBlended; // blended step
 #endif
@@ -27,6 +32,9 @@ void discardPoint() {
 #ifdef CENTRED
     vDisc = ivec3(0, 0, 1);
 #endif
+#ifdef PARABOLOID
+    vBend = vec2(1.0, 0.0);
+#endif
 #ifdef BLEND
     vBlended = 0xFFFFFFFFu;
 #endif
@@ -37,7 +45,7 @@ float distanceOfStep(uint step) {
 }
 
 // Half the size in world units.
-#ifdef BLEND
+#if defined(BLEND) || defined(PARABOLOID)
 float radiusOf(float size64, float distance) {
     float radius = size64 * uRadiusScale;
     return uPerspective ? radius * distance : radius;
@@ -50,6 +58,10 @@ void placePoint(ivec2 cell, float size64, uint step) {
 #ifdef CENTRED
     int radius = 2 * int(size64);
     vDisc = ivec3(2 * cell + 1, radius * radius);
+#endif
+#ifdef PARABOLOID
+    float middle = distanceOfStep(step), half256 = float(2 * int(size64));
+    vBend = vec2(middle, size64 > 64.0 ? radiusOf(size64, middle) / (half256 * half256) : 0.0);
 #endif
 #ifdef BLEND
     float distance = distanceOfStep(step);

@@ -129,6 +129,7 @@ export class LookPanel extends ModelElement {
                 [
                     ['circle', 'Circle'],
                     ['square', 'Square'],
+                    ['paraboloid', 'Parab.'],
                 ],
                 (shape) => this.model.changeStyle({ shape }),
             )}

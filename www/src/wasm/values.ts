@@ -24,7 +24,7 @@ export interface Style {
     sizeSpacings: number;
     minSizePixels: number;
     maxSizePixels: number;
-    shape: 'square' | 'circle';
+    shape: 'square' | 'circle' | 'paraboloid';
     delayedExpansion: 'off' | 'on' | 'auto';
     splats: { enabled: boolean; hardness: number; depthFactor: number };
     detail: {
