@@ -5,7 +5,7 @@
 // distances within 4e-6), the software picture has its colours within 1 level (RGB), 4 levels (gradients,
 // one table entry), 2 levels more with eye-dome lighting. Software and GLES: at most 1 pixel in 2000 further
 // apart than 2 levels (a position that rounds to another 1/128 pixel, a float distance that rounds to another
-// step), 3 with eye-dome lighting. On a GPU ten times as many (tests/support/gles.hpp).
+// step), 3 with eye-dome lighting. On a GPU twenty times as many (tests/support/gles.hpp).
 #include "client/render/software_renderer.hpp"
 #include "tests/support/gles.hpp"
 #include "tests/support/reference_picture.hpp"
