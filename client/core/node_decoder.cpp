@@ -50,13 +50,13 @@ Error errorAt(const DecodeJob& job, ErrorCode code, std::string what) {
 }
 
 // The first `count` intensities of the node.
-Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t count) {
+Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t count, const WorkGate* gate) {
     const CloudMetadata& metadata = *job.metadata;
     int block = intensityBlock(metadata);
     if (block < 0)
         return errorAt(job, ErrorCode::invalidArgument, "the cloud has no block of intensities");
     auto index = static_cast<std::size_t>(block);
-    STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.intensity));
+    STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.intensity, gate));
     int wanted = metadata.schema.find(attribute_names::intensity);
     std::vector<int> attributes = attributeBlocks(metadata)[index].attributes;
     auto column = static_cast<std::size_t>(std::find(attributes.begin(), attributes.end(), wanted) -
@@ -67,12 +67,12 @@ Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t cou
     return toFloats(attribute.type, columns[column], count);
 }
 
-Result<ResidentNode> decodePicturePart(const DecodeJob& job) {
+Result<ResidentNode> decodePicturePart(const DecodeJob& job, const WorkGate* gate) {
     const CloudMetadata& metadata = *job.metadata;
     int nodeBits = metadata.rootCube.nodeBits(job.entry.key.level);
     if (nodeBits < 0 || nodeBits > maxNodeBits)
         return errorAt(job, ErrorCode::corrupt, cat("a node 2^", nodeBits, " steps wide can hold no points"));
-    STIPPLE_TRY(picture, decodePicture(metadata, job.entry, job.strata, job.picture));
+    STIPPLE_TRY(picture, decodePicture(metadata, job.entry, job.strata, job.picture, gate));
     return packNode(job.entry.key, nodeBits, job.entry.pointCount, picture, metadata.pictureColour,
                     metadata.colourIs8Bit);
 }
@@ -94,13 +94,13 @@ class InlineDecoder final : public NodeDecoder {
 
 } // namespace
 
-Result<ResidentNode> decodeNode(const DecodeJob& job) {
+Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate) {
     if (!job.metadata || job.strata < 0 || job.strata > strataCount)
         return errorAt(job, ErrorCode::invalidArgument, "a decoding job without metadata or strata");
-    Result<ResidentNode> node = job.strata == 0 ? withoutPicture(job) : decodePicturePart(job);
+    Result<ResidentNode> node = job.strata == 0 ? withoutPicture(job) : decodePicturePart(job, gate);
     if (!node.ok() || !job.wantsIntensity || job.intensity.empty())
         return node;
-    STIPPLE_TRY(intensity, decodeIntensity(job, node->pointCount));
+    STIPPLE_TRY(intensity, decodeIntensity(job, node->pointCount, gate));
     node->intensity = std::move(intensity);
     return node;
 }

@@ -4,6 +4,7 @@
 
 #include "client/core/resident_node.hpp"
 #include "shared/base/result.hpp"
+#include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_entry.hpp"
 
@@ -25,8 +26,9 @@ struct DecodeJob {
 
 // Decodes and packs. With strata 0 the node has no positions, and pointCount is that of `intensity`, all
 // the node's points in progressive order. Otherwise intensities are those of the prefix.
-// Errors: corrupt or truncated, placed at the node's key. Pure; safe on untrusted bytes.
-Result<ResidentNode> decodeNode(const DecodeJob& job);
+// Errors: corrupt or truncated, placed at the node's key; cancelled once the gate is closed. Pure; safe on
+// untrusted bytes.
+Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate = nullptr);
 
 // Index of the block with the attribute Intensity for NodeEntry::attributeRange; -1 if there is none
 // because the cloud has no such attribute, or because it is the picture's colour.

@@ -8,7 +8,7 @@ namespace stipple::headless {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds updateWait{100};
+constexpr std::chrono::milliseconds updateWait{20}; // until looking whether it was stopped
 
 } // namespace
 

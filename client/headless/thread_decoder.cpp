@@ -1,6 +1,7 @@
 #include "client/headless/thread_decoder.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -25,6 +26,7 @@ class ThreadDecoder final : public NodeDecoder {
         {
             std::lock_guard lock(mutex_);
             stopping_ = true;
+            isClosed_ = true;
         }
         jobArrived_.notify_all();
         for (std::thread& worker : workers_)
@@ -79,7 +81,7 @@ class ThreadDecoder final : public NodeDecoder {
             Job job = std::move(jobs_.front());
             jobs_.pop_front();
             lock.unlock();
-            Result<ResidentNode> node = decodeNode(job.job);
+            Result<ResidentNode> node = decodeNode(job.job, &gate_);
             lock.lock();
             answers_.push_back({job.number, std::move(node)});
             answerReady_.notify_one();
@@ -103,6 +105,8 @@ class ThreadDecoder final : public NodeDecoder {
     std::deque<Answer> answers_;
     bool stopping_ = false;
 
+    std::atomic<bool> isClosed_{false}; // ends the jobs that have begun
+    const StopGate gate_{&isClosed_};
     std::vector<std::thread> workers_;
 };
 

@@ -1,6 +1,7 @@
 #include "client/core/node_decoder.hpp"
 
 #include "shared/format/cloud_file.hpp"
+#include "tests/support/counting_gate.hpp"
 #include "tests/support/small_cloud.hpp"
 
 #include <catch2/catch.hpp>
@@ -38,6 +39,21 @@ void checkPlacedOnce(const DecodeJob& job) {
 }
 
 } // namespace
+
+TEST_CASE("decoding ends within a piece of the node once nobody wants it") {
+    DecodeJob job = wholeJob(makeSmallCloud({.levels = 2, .pointsPerNode = 3 * WorkGate::pieceItems}));
+    CountingGate open;
+    REQUIRE(decodeNode(job, &open).ok());
+    CHECK(open.largest() <= WorkGate::pieceItems);
+    CHECK(open.handled() >= 6 * std::uint64_t{job.entry.pointCount});
+    for (int step = 0; step < 20; ++step) {
+        CountingGate gate(open.handled() * static_cast<std::uint64_t>(step) / 20);
+        Result<ResidentNode> node = decodeNode(job, &gate);
+        REQUIRE_FALSE(node.ok());
+        CHECK(node.error().code == ErrorCode::cancelled);
+        CHECK(gate.refused() == 1);
+    }
+}
 
 TEST_CASE("an error of a node names the node once") {
     DecodeJob whole = wholeJob(makeSmallCloud());

@@ -1,5 +1,6 @@
 #include "server/upstream/upstream_tokens.hpp"
 
+#include "server/upstream/upstream.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
@@ -50,4 +51,27 @@ TEST_CASE("a file of tokens that everybody can read is refused") {
     REQUIRE(loaded.ok());
     CHECK(loaded->of("https://a:443") == "x");
     CHECK(UpstreamTokens::load(folder.file("absent")).error().code == ErrorCode::notFound);
+}
+
+TEST_CASE("a file of tokens that is read again replaces them, unless it can't be used") {
+    TemporaryFolder folder;
+    std::string path = folder.file("tokens");
+    auto write = [&](const char* text) {
+        std::ofstream(path) << text;
+        std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+    };
+    write("https://a x\n");
+    UpstreamOptions options;
+    options.tokenPath = path;
+    auto upstream = Upstream::open(options);
+    REQUIRE(upstream.ok());
+    CHECK((*upstream)->tokenFor("https://a:443") == "x");
+    write("https://a y\nhttps://b z\n");
+    CHECK((*upstream)->reloadTokens().ok());
+    CHECK((*upstream)->tokenFor("https://a:443") == "y");
+    CHECK((*upstream)->tokenFor("https://b:443") == "z");
+    write("https://a\n");
+    CHECK_FALSE((*upstream)->reloadTokens().ok());
+    CHECK((*upstream)->tokenFor("https://a:443") == "y");
+    CHECK_FALSE(Upstream::open(options).ok());
 }
