@@ -1,7 +1,8 @@
 #include "client/core/cloud_loader.hpp"
 
-#include "client/core/node_decoder.hpp"
 #include "shared/base/text.hpp"
+
+#include <algorithm>
 
 namespace stipple {
 
@@ -28,7 +29,6 @@ void CloudLoader::advanceOpening() {
         return fail(created.error());
     hierarchy = std::move(*created);
     residency.resize(hierarchy.size());
-    intensityBlock = stipple::intensityBlock(*opened.metadata);
     openingNeeds.reset();
     state.metadata = opened.metadata;
     state.stage = CloudStage::ready;
@@ -59,7 +59,9 @@ Status CloudLoader::addChunk(std::uint32_t parent, ByteSpan block) {
 
 void CloudLoader::updateResidency(std::uint32_t node, const CachedNode* cached) {
     NodeResidency& here = residency[node];
-    bool drawable = cached && cached->node && !(needsIntensity && cached->node->intensity.empty());
+    bool drawable = cached && cached->node &&
+                    std::all_of(needs.blocks.begin(), needs.blocks.end(),
+                                [&](int block) { return cached->hasBlock(block); });
     here.points = drawable ? cached->node->pointCount : 0;
 }
 
@@ -123,13 +125,22 @@ LoadItem CloudLoader::pointsItem(std::uint32_t node) const {
     return itemFor(LoadKind::points, node, {entry.offsetBytes, entry.sizeBytes()});
 }
 
-std::optional<LoadItem> CloudLoader::intensityItem(std::uint32_t node, const CachedNode* cached) const {
-    if (!needsIntensity || (cached && (cached->intensity || cached->decodingIntensity ||
-                                       (cached->node && cached->node->intensity.size() ==
-                                                            hierarchy.node(node).entry.pointCount))))
+void CloudLoader::addBlockItems(std::uint32_t node, const CachedNode* cached,
+                                std::vector<LoadItem>& items) const {
+    for (int block : needs.blocks)
+        if (auto item = blockItem(node, block, cached))
+            items.push_back(std::move(*item));
+}
+
+std::optional<LoadItem> CloudLoader::blockItem(std::uint32_t node, int block,
+                                               const CachedNode* cached) const {
+    if (cached && cached->block(block))
         return std::nullopt;
     const NodeEntry& entry = hierarchy.node(node).entry;
-    return itemFor(LoadKind::intensity, node, entry.attributeRange(static_cast<std::size_t>(intensityBlock)));
+    LoadItem item =
+        itemFor(LoadKind::attributes, node, entry.attributeRange(static_cast<std::size_t>(block)));
+    item.key.block = block;
+    return item;
 }
 
 } // namespace stipple

@@ -2,6 +2,7 @@
 // what to load and takes in what was loaded; asking, decoding and caching are SessionLoading's.
 #pragma once
 
+#include "client/core/attribute_needs.hpp"
 #include "client/core/hierarchy.hpp"
 #include "client/core/load_queue.hpp"
 #include "client/core/node_cache.hpp"
@@ -28,8 +29,7 @@ struct CloudLoader {
     Hierarchy hierarchy;
     std::vector<NodeResidency> residency;                  // parallel to hierarchy's nodes
     std::unordered_map<std::uint32_t, int> decodeFailures; // by node
-    int intensityBlock = -1;                               // of further attributes; -1: none
-    bool needsIntensity = false;
+    AttributeNeeds needs;                                  // of the style
 
     bool ready() const { return state.stage == CloudStage::ready; }
     bool opening() const { return state.stage == CloudStage::opening; }
@@ -48,9 +48,11 @@ struct CloudLoader {
     std::optional<LoadItem> openingItem() const;
     LoadItem chunkItem(std::uint32_t parent) const;
     std::optional<LoadItem> pictureItem(std::uint32_t node, int strata, const CachedNode* cached) const;
-    std::optional<LoadItem> intensityItem(std::uint32_t node, const CachedNode* cached) const;
     // All bytes of a node, whatever is here of it already (LoadKind::points).
     LoadItem pointsItem(std::uint32_t node) const;
+    // The further blocks that the style needs, or one of them.
+    void addBlockItems(std::uint32_t node, const CachedNode* cached, std::vector<LoadItem>& items) const;
+    std::optional<LoadItem> blockItem(std::uint32_t node, int block, const CachedNode* cached) const;
 
   private:
     LoadItem itemFor(LoadKind kind, std::uint64_t id, ByteRange range) const;

@@ -11,6 +11,8 @@ struct FrameCounters {
     std::uint64_t nodesKnown = 0;          // in the loaded part of the hierarchy, all clouds
     std::uint64_t nodesVisited = 0;        // taken from the queue of the selection
     std::uint64_t nodesOutsideFrustum = 0; // skipped, with everything below them
+    std::uint64_t nodesClipped = 0;        // skipped, with everything below them: wholly clipped away
+    std::uint64_t nodesHidden = 0;         // skipped: filters, classes or clip boxes hide all their points
     std::uint64_t nodesTooSmall = 0;       // skipped: projected size under the limit
     std::uint64_t nodesOverBudget = 0;     // skipped: the point budget was used up
     std::uint64_t nodesSelected = 0;       // wanted in the picture
@@ -21,6 +23,8 @@ struct FrameCounters {
     std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
     std::uint64_t pointsExpected = 0;      // continuous detail: how many of them are likely to show
     std::uint64_t pointsTooFine = 0; // of selected nodes, skipped: finer than continuous detail asks for
+    std::uint64_t pointsHidden = 0;  // of drawn nodes, by filters, classes or clip boxes
+    std::uint64_t nodesExact = 0;    // drawn in their exact colours instead of means
     std::uint64_t chunksWaiting = 0; // hierarchy chunks wanted, not here yet
     std::uint64_t passesRun = 0;     // full-screen or geometry passes of the renderer
     std::uint64_t passesSkipped = 0; // passes a setting made unnecessary
@@ -45,7 +49,13 @@ struct SessionCounters {
     std::uint64_t nodesDecoded = 0; // decodings; a node refined by a stratum counts again
     std::uint64_t pointsDecoded = 0;
     std::uint64_t nodesEvicted = 0;
-    std::uint64_t cacheBytes = 0; // now
+    // Further blocks (attributes, exact colours) of nodes whose picture was fetched: all their bytes, and
+    // those that were fetched. What styles did not need is the difference.
+    std::uint64_t attributeBytesOffered = 0;
+    std::uint64_t attributeBytesFetched = 0;
+    std::uint64_t nodesPainted = 0;   // colours of a node worked out: it, its attributes or the style changed
+    std::uint64_t columnsDropped = 0; // unused attributes of a node let go, to make room
+    std::uint64_t cacheBytes = 0;     // now
     std::uint64_t cacheBytesPeak = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "client/core/frame_planner.hpp"
 
+#include "client/core/node_columns.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -80,11 +82,60 @@ DrawNode planNode(std::shared_ptr<const ResidentNode> node, std::uint32_t pointC
     }
     draw.pointCount = std::min(pointCount, node->pointCount);
     draw.scale = grid.scale;
-    draw.cameraZ = eye.z;
     draw.spacing = std::ldexp(metadata.spacing, -node->key.level);
     draw.density = rankDensity(node->key.level, draw.spacing, node->totalPoints);
     draw.node = std::move(node);
     return draw;
+}
+
+// Of what the attribute means, over all its values.
+Range wholeRange(std::string_view name, std::span<const std::shared_ptr<const CloudMetadata>> clouds) {
+    Range whole{HUGE_VAL, -HUGE_VAL};
+    for (const auto& metadata : clouds) {
+        int found = findAttribute(metadata->schema, name);
+        auto index = static_cast<std::size_t>(found);
+        if (found < 0 || index >= metadata->statistics.size() || metadata->pointCount == 0)
+            continue;
+        const Attribute& attribute = metadata->schema.attributes[index];
+        for (double stored : {metadata->statistics[index].min, metadata->statistics[index].max}) {
+            double value = attribute.offset + attribute.scale * stored;
+            whole = {std::min(whole.min, value), std::max(whole.max, value)};
+        }
+    }
+    return whole;
+}
+
+// From the root's level to that at which points on a surface as large as the cloud are as near to each other
+// as its points are.
+Range levelsOf(std::span<const std::shared_ptr<const CloudMetadata>> clouds) {
+    double deepest = 1;
+    for (const auto& metadata : clouds) {
+        BoxD box = metadata->worldBounds();
+        if (box.empty() || metadata->pointCount == 0)
+            continue;
+        Vec3d size = box.max - box.min;
+        double area = std::max({size.x * size.y, size.y * size.z, size.z * size.x});
+        double apart = std::sqrt(area / static_cast<double>(metadata->pointCount));
+        if (apart > 0 && metadata->spacing > 0)
+            deepest = std::max(deepest, std::ceil(std::log2(metadata->spacing / apart)));
+    }
+    return {0, deepest};
+}
+
+Range resolvedRange(const Style& resolved, ColourMode mode, const std::string& attribute, Range range,
+                    std::span<const std::shared_ptr<const CloudMetadata>> clouds) {
+    if (range.min != range.max)
+        return usable(range);
+    switch (mode) {
+    case ColourMode::intensity:
+        return resolved.intensityRange;
+    case ColourMode::elevation:
+        return resolved.elevationRange;
+    case ColourMode::level:
+        return resolved.levelRange;
+    default:
+        return usable(wholeRange(attributeOf(mode, attribute), clouds));
+    }
 }
 
 Style resolvedStyle(const Style& style, std::span<const std::shared_ptr<const CloudMetadata>> clouds) {
@@ -92,7 +143,7 @@ Style resolvedStyle(const Style& style, std::span<const std::shared_ptr<const Cl
     Pool intensity;
     Range elevation{HUGE_VAL, -HUGE_VAL};
     for (const auto& metadata : clouds) {
-        int found = metadata->schema.find(attribute_names::intensity);
+        int found = findAttribute(metadata->schema, attribute_names::intensity);
         auto index = static_cast<std::size_t>(found);
         if (found >= 0 && index < metadata->statistics.size() && metadata->pointCount > 0)
             intensity.add(static_cast<double>(metadata->pointCount), metadata->statistics[index]);
@@ -104,8 +155,15 @@ Style resolvedStyle(const Style& style, std::span<const std::shared_ptr<const Cl
         resolved.intensityRange = intensity.count > 0 ? intensity.typical() : Range{0, 65535};
     if (style.elevationRange.min == style.elevationRange.max)
         resolved.elevationRange = elevation;
-    resolved.intensityRange = usable(resolved.intensityRange);
-    resolved.elevationRange = usable(resolved.elevationRange);
+    if (style.levelRange.min == style.levelRange.max)
+        resolved.levelRange = levelsOf(clouds);
+    for (Range* range : {&resolved.intensityRange, &resolved.elevationRange, &resolved.levelRange})
+        *range = usable(*range);
+    if (!attributeOf(style.colourMode, style.attribute).empty())
+        resolved.attributeRange =
+            resolvedRange(resolved, style.colourMode, style.attribute, style.attributeRange, clouds);
+    for (MixedColour& one : resolved.mix)
+        one.range = resolvedRange(resolved, one.mode, one.attribute, one.range, clouds);
     return resolved;
 }
 

@@ -24,7 +24,9 @@ DrawNode planNode(std::shared_ptr<const ResidentNode> node, std::uint32_t pointC
                   const CloudMetadata& metadata, Vec3d eye);
 
 // `style` with ranges where it leaves them to the clouds: intensity from mean ± 2 deviations over all their
-// points, within min and max; elevation from their bounds. min < max in the answer.
+// points, within min and max; elevation from their bounds; levels from the root's to about the finest; other
+// attributes from the least value to the largest. (Files have statistics of clouds, not of nodes, so ranges
+// stay the same while one moves.) min < max in the answer, of all ranges that the style uses.
 Style resolvedStyle(const Style& style, std::span<const std::shared_ptr<const CloudMetadata>> clouds);
 
 } // namespace stipple

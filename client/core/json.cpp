@@ -1,6 +1,8 @@
 #include "client/core/json.hpp"
 
+#include "client/core/colour_json.hpp"
 #include "client/core/json_fields.hpp"
+#include "shared/points/point_classes.hpp"
 
 namespace stipple {
 
@@ -21,19 +23,6 @@ constexpr Names<NamedView, 3> namedViews{{
     {"top", NamedView::top},
     {"front", NamedView::front},
     {"iso", NamedView::iso},
-}};
-constexpr Names<ColourMode, 3> colourModes{{
-    {"rgb", ColourMode::rgb},
-    {"intensity", ColourMode::intensity},
-    {"elevation", ColourMode::elevation},
-}};
-constexpr Names<GradientName, 6> gradients{{
-    {"viridis", GradientName::viridis},
-    {"turbo", GradientName::turbo},
-    {"inferno", GradientName::inferno},
-    {"spectral", GradientName::spectral},
-    {"grey", GradientName::grey},
-    {"terrain", GradientName::terrain},
 }};
 constexpr Names<PointSizeMode, 4> sizeModes{{
     {"fixed", PointSizeMode::fixed},
@@ -67,8 +56,20 @@ json vectorJson(const Vec3d& v) {
     return json::array({v.x, v.y, v.z});
 }
 
-json rangeJson(const Range& range) {
-    return range.min == range.max ? json(nullptr) : json::array({range.min, range.max});
+// The classes of the cloud's points, by value: names and colours are point_classes.hpp's. Empty if it has
+// none, or too many to be counted.
+json classesJson(const CloudMetadata& metadata) {
+    json classes = json::array();
+    auto at = static_cast<std::size_t>(metadata.schema.find(attribute_names::classification));
+    if (at >= metadata.statistics.size())
+        return classes;
+    for (auto [value, points] : metadata.statistics[at].histogram)
+        if (value >= 0 && value <= 255)
+            classes.push_back({{"class", value},
+                               {"name", className(metadata.schema, static_cast<int>(value))},
+                               {"colour", classColour(static_cast<std::uint8_t>(value))},
+                               {"points", points}});
+    return classes;
 }
 
 void readDetail(FieldReader& fields, Detail& detail) {
@@ -130,10 +131,7 @@ Result<Camera> cameraFromJson(std::string_view text, const Camera& base) {
 Result<Style> detail::readStyle(const json& value, const Style& base) {
     Style style = base;
     FieldReader fields(value, "style");
-    fields.choice("colourMode", style.colourMode, colourModes);
-    fields.choice("gradient", style.gradient, gradients);
-    fields.range("intensityRange", style.intensityRange);
-    fields.range("elevationRange", style.elevationRange);
+    readColours(fields, style);
     fields.choice("sizeMode", style.sizeMode, sizeModes);
     fields.number("sizePixels", style.sizePixels, 0.01, 1000);
     fields.number("sizeWorld", style.sizeWorld, 0, 1e15);
@@ -209,22 +207,20 @@ json toJson(const Style& style) {
                    {"growthRange", style.detail.growthRange},
                    {"peripheralFalloff", style.detail.peripheralFalloff},
                    {"peripheralDensity", style.detail.peripheralDensity}};
-    return {{"colourMode", nameOf(colourModes, style.colourMode)},
-            {"gradient", nameOf(gradients, style.gradient)},
-            {"intensityRange", rangeJson(style.intensityRange)},
-            {"elevationRange", rangeJson(style.elevationRange)},
-            {"sizeMode", nameOf(sizeModes, style.sizeMode)},
-            {"sizePixels", style.sizePixels},
-            {"sizeWorld", style.sizeWorld},
-            {"sizeSpacings", style.sizeSpacings},
-            {"minSizePixels", style.minSizePixels},
-            {"maxSizePixels", style.maxSizePixels},
-            {"shape", nameOf(shapes, style.shape)},
-            {"splats", splats},
-            {"delayedExpansion", nameOf(expansions, style.delayedExpansion)},
-            {"detail", detail},
-            {"edl", edl},
-            {"background", style.background}};
+    json all = coloursJson(style);
+    all.update({{"sizeMode", nameOf(sizeModes, style.sizeMode)},
+                {"sizePixels", style.sizePixels},
+                {"sizeWorld", style.sizeWorld},
+                {"sizeSpacings", style.sizeSpacings},
+                {"minSizePixels", style.minSizePixels},
+                {"maxSizePixels", style.maxSizePixels},
+                {"shape", nameOf(shapes, style.shape)},
+                {"splats", splats},
+                {"delayedExpansion", nameOf(expansions, style.delayedExpansion)},
+                {"detail", detail},
+                {"edl", edl},
+                {"background", style.background}});
+    return all;
 }
 
 json toJson(const SessionLimits& limits) {
@@ -244,6 +240,8 @@ json toJson(const FrameCounters& c) {
     return {{"nodesKnown", c.nodesKnown},
             {"nodesVisited", c.nodesVisited},
             {"nodesOutsideFrustum", c.nodesOutsideFrustum},
+            {"nodesClipped", c.nodesClipped},
+            {"nodesHidden", c.nodesHidden},
             {"nodesTooSmall", c.nodesTooSmall},
             {"nodesOverBudget", c.nodesOverBudget},
             {"nodesSelected", c.nodesSelected},
@@ -254,6 +252,8 @@ json toJson(const FrameCounters& c) {
             {"pointsDrawn", c.pointsDrawn},
             {"pointsExpected", c.pointsExpected},
             {"pointsTooFine", c.pointsTooFine},
+            {"pointsHidden", c.pointsHidden},
+            {"nodesExact", c.nodesExact},
             {"chunksWaiting", c.chunksWaiting},
             {"passesRun", c.passesRun},
             {"passesSkipped", c.passesSkipped},
@@ -277,6 +277,10 @@ json toJson(const SessionCounters& c) {
             {"nodesDecoded", c.nodesDecoded},
             {"pointsDecoded", c.pointsDecoded},
             {"nodesEvicted", c.nodesEvicted},
+            {"attributeBytesOffered", c.attributeBytesOffered},
+            {"attributeBytesFetched", c.attributeBytesFetched},
+            {"nodesPainted", c.nodesPainted},
+            {"columnsDropped", c.columnsDropped},
             {"cacheBytes", c.cacheBytes},
             {"cacheBytesPeak", c.cacheBytesPeak}};
 }
@@ -310,6 +314,7 @@ json toJson(const CloudState& cloud) {
         value["bounds"] = toJson(cloud.metadata->worldBounds());
         value["crs"] = cloud.metadata->crs.name;
         value["attributes"] = std::move(attributes);
+        value["classes"] = classesJson(*cloud.metadata);
     }
     return value;
 }

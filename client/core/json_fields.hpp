@@ -102,6 +102,54 @@ class FieldReader {
         fail(name, "must be one of " + known);
     }
 
+    void text(const char* name, std::string& value) {
+        if (const Json* field = find(name)) {
+            if (!field->is_string())
+                return fail(name, "must be a text");
+            value = field->get<std::string>();
+        }
+    }
+
+    // N numbers; false if the field is absent or wrong (which is remembered).
+    template <std::size_t N>
+    bool numbersOf(const char* name, std::array<double, N>& values, double limit) {
+        if (!find(name))
+            return false;
+        if (numbers(name, values, -limit, limit))
+            return true;
+        fail(name, cat("must be ", N, " numbers"));
+        return false;
+    }
+
+    // A number, or null for `open`, which it is too where it is absent.
+    void limit(const char* name, double& value, double open) {
+        value = open;
+        const Json* field = find(name);
+        if (!field || field->is_null())
+            return;
+        if (auto read = numberIn<double>(*field, -1e300, 1e300))
+            value = *read;
+        else
+            fail(name, "must be a number, or null for none");
+    }
+
+    // A list of at most `most` items, each taken by `take(item, path)`, which answers a Status. False if it
+    // is absent.
+    template <class Take>
+    bool list(const char* name, std::size_t most, Take take) {
+        const Json* field = find(name);
+        if (!field)
+            return false;
+        if (!field->is_array() || field->size() > most) {
+            fail(name, cat("must be a list of at most ", most));
+            return true;
+        }
+        for (std::size_t i = 0; i < field->size() && !error_; ++i)
+            if (Status status = take((*field)[i], cat(path_, ".", name, "[", i, "]")); !status.ok())
+                error_ = status.error();
+        return true;
+    }
+
     // A nested object, read by `read(FieldReader&)`.
     template <class Read>
     void object(const char* name, Read read) {

@@ -18,12 +18,13 @@
 
 namespace stipple {
 
-enum class LoadKind : std::uint8_t { opening, chunk, picture, intensity, points };
+enum class LoadKind : std::uint8_t { opening, chunk, picture, attributes, points };
 
 struct LoadKey {
     std::uint32_t cloud = 0;
     LoadKind kind = LoadKind::opening;
-    std::uint64_t id = 0; // of a node; opening: the offset
+    std::uint64_t id = 0;   // of a node; opening: the offset
+    std::int32_t block = 0; // attributes: of the node's further blocks
     friend auto operator<=>(const LoadKey&, const LoadKey&) = default;
 };
 

@@ -4,6 +4,28 @@
 
 namespace stipple {
 
+const CachedBlock* CachedNode::block(int index) const {
+    auto at = std::find_if(blocks.begin(), blocks.end(),
+                           [&](const CachedBlock& cached) { return cached.block == index; });
+    return at == blocks.end() ? nullptr : &*at;
+}
+
+std::vector<std::shared_ptr<const NodeColumns>> CachedNode::columns() const {
+    std::vector<std::shared_ptr<const NodeColumns>> here;
+    for (const CachedBlock& cached : blocks)
+        if (cached.columns)
+            here.push_back(cached.columns);
+    return here;
+}
+
+std::uint64_t CachedNode::sizeBytes() const {
+    std::uint64_t bytes =
+        sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) + (paint ? paint->sizeBytes() : 0);
+    for (const CachedBlock& cached : blocks)
+        bytes += sizeof cached + (cached.columns ? cached.columns->sizeBytes() : 0);
+    return bytes;
+}
+
 CachedNode* NodeCache::find(CacheKey key) {
     auto at = entries_.find(key);
     return at == entries_.end() ? nullptr : &at->second.node;

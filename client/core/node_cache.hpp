@@ -2,6 +2,7 @@
 // byte twice) and the decoded points. Bounded in bytes; the least recently used go first.
 #pragma once
 
+#include "client/core/node_paint.hpp"
 #include "client/core/resident_node.hpp"
 #include "shared/base/bytes.hpp"
 
@@ -20,19 +21,37 @@ struct CacheKey {
     friend auto operator<=>(const CacheKey&, const CacheKey&) = default;
 };
 
+// A block of attributes of a node.
+struct CachedBlock {
+    int block = 0;
+    bool decoding = false;                      // a job is on its way
+    std::shared_ptr<const NodeColumns> columns; // null: not here yet
+};
+
+// What a paint depends on.
+struct PaintKey {
+    std::uint64_t style = 0; // number of the style
+    std::uint64_t node = 0;  // ResidentNode::id
+    std::size_t blocks = 0;  // that are here
+    bool exact = false;
+    friend bool operator==(const PaintKey&, const PaintKey&) = default;
+};
+
 struct CachedNode {
     Bytes compressed;                         // of the strata fetched; empty once the node is complete
     int strataFetched = 0;                    // 0..4
     bool decodingPicture = false;             // a job is on its way
     int strataDecoding = 0;                   // of that job
     std::shared_ptr<const ResidentNode> node; // what can be drawn; null at first
-    bool decodingIntensity = false;
-    std::shared_ptr<const std::vector<float>> intensity; // of all points, until the node has them all
+    std::vector<CachedBlock> blocks;
+    std::shared_ptr<const NodePaint> paint; // as of paintKey; null: the node needs none
+    PaintKey paintKey;
 
-    std::uint64_t sizeBytes() const {
-        return sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) +
-               (intensity ? 4 * intensity->size() : 0);
-    }
+    const CachedBlock* block(int index) const;
+    bool hasBlock(int index) const { return block(index) && block(index)->columns; }
+    // Of all blocks that are here.
+    std::vector<std::shared_ptr<const NodeColumns>> columns() const;
+    std::uint64_t sizeBytes() const;
 };
 
 class NodeCache {
@@ -47,6 +66,13 @@ class NodeCache {
     // frame `frame`. Returns what was dropped.
     std::vector<CacheKey> evict(std::uint64_t limitBytes, std::uint64_t frame);
     void erase(CacheKey key);
+    // Calls `change(key, node)` for each entry, which answers whether it changed its contents.
+    template <class Change>
+    void visit(const Change& change) {
+        for (auto& [key, entry] : entries_)
+            if (change(key, entry.node))
+                recount(key);
+    }
     void eraseCloud(std::uint32_t cloud);
 
     std::uint64_t sizeBytes() const { return bytes_; }

@@ -3,68 +3,64 @@
 #include "shared/base/text.hpp"
 #include "shared/format/cloud_file.hpp"
 
-#include <algorithm>
-
 namespace stipple {
 
 namespace {
-
-template <class T>
-std::vector<float> toFloats(ByteSpan column, std::size_t count) {
-    std::vector<float> values(count);
-    for (std::size_t i = 0; i < count; ++i)
-        values[i] = static_cast<float>(loadLe<T>(column.data() + i * sizeof(T)));
-    return values;
-}
-
-// `count` stored values; the column holds at least as many.
-std::vector<float> toFloats(AttributeType type, ByteSpan column, std::size_t count) {
-    switch (type) {
-    case AttributeType::u8:
-        return toFloats<std::uint8_t>(column, count);
-    case AttributeType::i8:
-        return toFloats<std::int8_t>(column, count);
-    case AttributeType::u16:
-        return toFloats<std::uint16_t>(column, count);
-    case AttributeType::i16:
-        return toFloats<std::int16_t>(column, count);
-    case AttributeType::u32:
-        return toFloats<std::uint32_t>(column, count);
-    case AttributeType::i32:
-        return toFloats<std::int32_t>(column, count);
-    case AttributeType::u64:
-        return toFloats<std::uint64_t>(column, count);
-    case AttributeType::i64:
-        return toFloats<std::int64_t>(column, count);
-    case AttributeType::f32:
-        return toFloats<float>(column, count);
-    case AttributeType::f64:
-        return toFloats<double>(column, count);
-    }
-    return {};
-}
 
 // For what is found here; the decoders of blocks name the node themselves.
 Error errorAt(const DecodeJob& job, ErrorCode code, std::string what) {
     return {code, std::move(what), "node " + job.entry.key.text(), ""};
 }
 
-// The first `count` intensities of the node.
-Result<std::vector<float>> decodeIntensity(const DecodeJob& job, std::size_t count, const WorkGate* gate) {
+// The picture without places whose colours the exact ones are coded against.
+Result<NodePicture> shownPicture(const DecodeJob& job) {
+    std::size_t channels = job.metadata->pictureColour == PictureColour::rgb ? 3 : 1;
+    if (job.shown.size() != job.entry.pointCount * channels * 2)
+        return errorAt(job, ErrorCode::invalidArgument, "exact colours without the colours that are shown");
+    NodePicture picture;
+    picture.positions.resize(job.entry.pointCount);
+    for (std::size_t at = 0; at < job.shown.size(); at += 2)
+        picture.colour.push_back(loadLe<std::uint16_t>(job.shown.data() + at));
+    return picture;
+}
+
+Result<NodeColumns> decodeExact(const DecodeJob& job) {
     const CloudMetadata& metadata = *job.metadata;
-    int block = intensityBlock(metadata);
-    if (block < 0)
-        return errorAt(job, ErrorCode::invalidArgument, "the cloud has no block of intensities");
-    auto index = static_cast<std::size_t>(block);
-    STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.intensity, gate));
-    int wanted = metadata.schema.find(attribute_names::intensity);
-    std::vector<int> attributes = attributeBlocks(metadata)[index].attributes;
-    auto column = static_cast<std::size_t>(std::find(attributes.begin(), attributes.end(), wanted) -
-                                           attributes.begin());
-    const Attribute& attribute = metadata.schema.attributes[static_cast<std::size_t>(wanted)];
-    if (columns.size() <= column || columns[column].size() < count * attribute.size())
-        return errorAt(job, ErrorCode::corrupt, "the block of intensities is too short");
-    return toFloats(attribute.type, columns[column], count);
+    STIPPLE_TRY(picture, shownPicture(job));
+    STIPPLE_CHECK(decodeExactColour(metadata, job.entry, job.attributes, picture));
+    ByteWriter values;
+    if (metadata.pictureColour == PictureColour::rgb)
+        for (std::size_t i = 0; i < picture.colour.size(); i += 3)
+            values.write(colourWord(picture.colour[i], picture.colour[i + 1], picture.colour[i + 2],
+                                    metadata.colourIs8Bit));
+    else
+        for (std::uint16_t value : picture.colour)
+            values.write(value);
+    NodeColumn column = metadata.pictureColour == PictureColour::rgb ? NodeColumn{exactColourWords, 4}
+                                                                     : NodeColumn{exactIntensity, 2};
+    return NodeColumns{job.entry.pointCount, {column}, values.take()};
+}
+
+Result<NodeColumns> decodeColumns(const DecodeJob& job, const WorkGate* gate) {
+    const CloudMetadata& metadata = *job.metadata;
+    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
+    auto index = static_cast<std::size_t>(job.block);
+    if (job.block < 0 || index >= blocks.size() || job.entry.attributeBytes.size() != blocks.size())
+        return errorAt(job, ErrorCode::invalidArgument, cat("the node has no block ", job.block));
+    if (blocks[index].isExactColour)
+        return decodeExact(job);
+    STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.attributes, gate));
+    NodeColumns made;
+    made.pointCount = job.entry.pointCount;
+    for (std::size_t c = 0; c < blocks[index].attributes.size(); ++c) {
+        int attribute = blocks[index].attributes[c];
+        std::size_t size = metadata.schema.attributes[static_cast<std::size_t>(attribute)].size();
+        if (c >= columns.size() || columns[c].size() != size * job.entry.pointCount)
+            return errorAt(job, ErrorCode::corrupt, "a block of attributes is too short");
+        made.columns.push_back({attribute, static_cast<std::uint32_t>(size)});
+        made.values.insert(made.values.end(), columns[c].begin(), columns[c].end());
+    }
+    return made;
 }
 
 Result<ResidentNode> decodePicturePart(const DecodeJob& job, const WorkGate* gate) {
@@ -73,15 +69,20 @@ Result<ResidentNode> decodePicturePart(const DecodeJob& job, const WorkGate* gat
     if (nodeBits < 0 || nodeBits > maxNodeBits)
         return errorAt(job, ErrorCode::corrupt, cat("a node 2^", nodeBits, " steps wide can hold no points"));
     STIPPLE_TRY(picture, decodePicture(metadata, job.entry, job.strata, job.picture, gate));
-    return packNode(job.entry.key, nodeBits, job.entry.pointCount, picture, metadata.pictureColour,
-                    metadata.colourIs8Bit);
+    ResidentNode node = packNode(job.entry.key, nodeBits, job.entry.pointCount, picture,
+                                 metadata.pictureColour, metadata.colourIs8Bit);
+    if (metadata.innerColour == InnerColour::mean && job.entry.childMask != 0)
+        keepShownColours(node, picture);
+    return node;
 }
 
-ResidentNode withoutPicture(const DecodeJob& job) {
+Result<ResidentNode> decodeBlock(const DecodeJob& job, const WorkGate* gate) {
+    STIPPLE_TRY(columns, decodeColumns(job, gate));
     ResidentNode node;
     node.id = nextResidentNodeId();
     node.key = job.entry.key;
     node.pointCount = node.totalPoints = job.entry.pointCount;
+    node.columns = std::move(columns);
     return node;
 }
 
@@ -97,32 +98,7 @@ class InlineDecoder final : public NodeDecoder {
 Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate) {
     if (!job.metadata || job.strata < 0 || job.strata > strataCount)
         return errorAt(job, ErrorCode::invalidArgument, "a decoding job without metadata or strata");
-    Result<ResidentNode> node = job.strata == 0 ? withoutPicture(job) : decodePicturePart(job, gate);
-    if (!node.ok() || !job.wantsIntensity || job.intensity.empty())
-        return node;
-    STIPPLE_TRY(intensity, decodeIntensity(job, node->pointCount, gate));
-    node->intensity = std::move(intensity);
-    return node;
-}
-
-int intensityBlock(const CloudMetadata& metadata) {
-    int wanted = metadata.schema.find(attribute_names::intensity);
-    if (wanted < 0)
-        return -1;
-    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-        if (!blocks[i].isExactColour && std::find(blocks[i].attributes.begin(), blocks[i].attributes.end(),
-                                                  wanted) != blocks[i].attributes.end())
-            return static_cast<int>(i);
-    return -1;
-}
-
-ResidentNode withIntensity(const ResidentNode& node, const std::vector<float>& intensities) {
-    ResidentNode merged = node;
-    merged.id = nextResidentNodeId();
-    std::size_t count = std::min<std::size_t>(node.pointCount, intensities.size());
-    merged.intensity.assign(intensities.begin(), intensities.begin() + static_cast<std::ptrdiff_t>(count));
-    return merged;
+    return job.strata == 0 ? decodeBlock(job, gate) : decodePicturePart(job, gate);
 }
 
 std::unique_ptr<NodeDecoder> makeInlineDecoder() {

@@ -18,24 +18,19 @@ struct DecodeJob {
     std::uint32_t cloud = 0; // id of the cloud; a worker keeps its metadata
     std::shared_ptr<const CloudMetadata> metadata;
     NodeEntry entry;
-    int strata = strataCount; // 0..4: `picture` holds this many; 0: only the intensity is wanted
+    int strata = strataCount; // 1..4: `picture` holds this many; 0: a block of attributes is wanted instead
     Bytes picture;            // entry.strataRange(strata)
-    bool wantsIntensity = false;
-    Bytes intensity; // the block that holds Intensity (intensityBlock); empty if it is not wanted
+    std::int32_t block = 0;   // strata 0: which of attributeBlocks()
+    Bytes attributes;         // strata 0: entry.attributeRange(block)
+    // strata 0, a block of exact colours: what all the node's points show, which they are coded against
+    // (shownColours()).
+    Bytes shown;
 };
 
-// Decodes and packs. With strata 0 the node has no positions, and pointCount is that of `intensity`, all
-// the node's points in progressive order. Otherwise intensities are those of the prefix.
-// Errors: corrupt or truncated, placed at the node's key; cancelled once the gate is closed. Pure; safe on
-// untrusted bytes.
+// Decodes and packs. With strata 0 the node has no positions but columns, of all its points in progressive
+// order: those of the block, or exactColourWords or exactIntensity. Errors: corrupt or truncated, placed at
+// the node's key; cancelled once the gate is closed. Pure; safe on untrusted bytes.
 Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate = nullptr);
-
-// Index of the block with the attribute Intensity for NodeEntry::attributeRange; -1 if there is none
-// because the cloud has no such attribute, or because it is the picture's colour.
-int intensityBlock(const CloudMetadata& metadata);
-
-// `node` with the intensities of its prefix out of those of all its points, and a new id.
-ResidentNode withIntensity(const ResidentNode& node, const std::vector<float>& intensities);
 
 class NodeDecoder {
   public:

@@ -24,19 +24,31 @@ void NodeDecoding::takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& l
         cached.compressed = std::move(*loaded.bytes);
     else
         cached.compressed.insert(cached.compressed.end(), loaded.bytes->begin(), loaded.bytes->end());
+    if (cached.strataFetched == 0)
+        for (std::uint32_t bytes : cloud.hierarchy.node(node).entry.attributeBytes)
+            counters_.attributeBytesOffered += bytes;
     cached.strataFetched = loaded.item.strata;
     cache_.recount(key);
     if (!cached.decodingPicture)
         decodePicture(cloud, node, cached);
 }
 
-void NodeDecoding::takeIntensity(CloudLoader& cloud, std::uint32_t node, Bytes bytes) {
+void NodeDecoding::takeBlock(CloudLoader& cloud, std::uint32_t node, int block, Bytes bytes) {
+    CachedNode& cached = cache_.obtain({cloud.state.id, node});
+    counters_.attributeBytesFetched += bytes.size();
+    if (cached.block(block))
+        return; // here, or on its way
     DecodeJob job;
     job.entry = cloud.hierarchy.node(node).entry;
     job.strata = 0;
-    job.wantsIntensity = true;
-    job.intensity = std::move(bytes);
-    cache_.obtain({cloud.state.id, node}).decodingIntensity = true;
+    job.block = block;
+    job.attributes = std::move(bytes);
+    if (block == cloud.needs.exactBlock) {
+        if (!cached.node || cached.node->pointCount < cached.node->totalPoints)
+            return; // what they are coded against was dropped in between
+        job.shown = shownColours(*cached.node);
+    }
+    cached.blocks.push_back({block, true, nullptr});
     decode(cloud, node, std::move(job));
 }
 
@@ -53,14 +65,15 @@ NodeDecoding::Taken NodeDecoding::takeAnswers(CloudMap& clouds) {
             continue; // removed, failed or evicted meanwhile
         CloudLoader& cloud = at->second;
         taken.changed = true;
-        (answer.strata > 0 ? cached->decodingPicture : cached->decodingIntensity) = false;
+        if (answer.strata > 0)
+            cached->decodingPicture = false;
         if (!answer.node.ok()) {
             if (takeFailure(cloud, answer, *cached))
                 taken.errors.push_back(cloud.placed(answer.node.error()));
         } else if (answer.strata > 0) {
             takeDecodedPicture(cloud, answer, *cached);
         } else {
-            takeDecodedIntensity(answer, *cached);
+            takeDecodedBlock(answer, *cached);
         }
         cache_.recount(answer.key);
         cloud.updateResidency(answer.key.node, cached);
@@ -82,14 +95,15 @@ void NodeDecoding::decode(CloudLoader& cloud, std::uint32_t node, DecodeJob job)
     job.cloud = cloud.state.id;
     job.metadata = cloud.opened.metadata;
     CacheKey key{cloud.state.id, node};
-    int strata = job.strata;
-    std::uint64_t bytes = job.picture.size() + job.intensity.size();
+    int strata = job.strata, block = job.block;
+    std::uint64_t bytes = job.picture.size() + job.attributes.size();
     bytesPending_ += bytes;
     ++pending_;
-    decoder_.decode(std::move(job), [this, alive = alive_, key, strata, bytes](Result<ResidentNode> decoded) {
-        if (*alive)
-            answers_.push_back({key, strata, bytes, std::move(decoded)});
-    });
+    decoder_.decode(std::move(job),
+                    [this, alive = alive_, key, strata, block, bytes](Result<ResidentNode> decoded) {
+                        if (*alive)
+                            answers_.push_back({key, strata, block, bytes, std::move(decoded)});
+                    });
 }
 
 bool NodeDecoding::takeFailure(CloudLoader& cloud, const Answer& answer, CachedNode& cached) {
@@ -97,6 +111,8 @@ bool NodeDecoding::takeFailure(CloudLoader& cloud, const Answer& answer, CachedN
         // The bytes may have been damaged on their way: once more from the start.
         cached.compressed = {};
         cached.strataFetched = 0;
+    } else {
+        std::erase_if(cached.blocks, [&](const CachedBlock& one) { return one.block == answer.block; });
     }
     int failures = ++cloud.decodeFailures[answer.key.node];
     if (failures < maxDecodeAttempts)
@@ -109,26 +125,22 @@ void NodeDecoding::takeDecodedPicture(CloudLoader& cloud, Answer& answer, Cached
     ++counters_.nodesDecoded;
     counters_.pointsDecoded += answer.node->pointCount;
     ResidentNode node = std::move(*answer.node);
-    if (cached.intensity)
-        node = withIntensity(node, *cached.intensity);
     bool complete = node.pointCount == node.totalPoints;
     cached.node = std::make_shared<const ResidentNode>(std::move(node));
     if (complete) {
         cached.strataFetched = strataCount; // strata may be empty
         cached.compressed = {};
-        cached.intensity.reset();
     } else if (cached.strataFetched > answer.strata) {
         decodePicture(cloud, answer.key.node, cached);
     }
 }
 
-void NodeDecoding::takeDecodedIntensity(Answer& answer, CachedNode& cached) {
-    auto intensity = std::make_shared<std::vector<float>>(std::move(answer.node->intensity));
-    bool complete = cached.node && cached.node->pointCount == cached.node->totalPoints;
-    if (cached.node)
-        cached.node = std::make_shared<const ResidentNode>(withIntensity(*cached.node, *intensity));
-    if (!complete)
-        cached.intensity = std::move(intensity);
+void NodeDecoding::takeDecodedBlock(Answer& answer, CachedNode& cached) {
+    for (CachedBlock& one : cached.blocks)
+        if (one.block == answer.block) {
+            one.decoding = false;
+            one.columns = std::make_shared<const NodeColumns>(std::move(answer.node->columns));
+        }
 }
 
 } // namespace stipple

@@ -22,9 +22,9 @@ class NodeDecoding {
     NodeDecoding(NodeDecoder& decoder, NodeCache& cache, SessionCounters& counters);
     ~NodeDecoding();
 
-    // The next strata of a node, or its intensities.
+    // The next strata of a node, or one of its further blocks.
     void takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& loaded);
-    void takeIntensity(CloudLoader& cloud, std::uint32_t node, Bytes bytes);
+    void takeBlock(CloudLoader& cloud, std::uint32_t node, int block, Bytes bytes);
 
     int pump(std::chrono::milliseconds wait) { return decoder_.pump(wait); }
     bool pending() const { return pending_ > 0; }
@@ -42,7 +42,8 @@ class NodeDecoding {
   private:
     struct Answer {
         CacheKey key;
-        int strata; // 0: the intensities
+        int strata; // 0: a further block
+        int block;
         std::uint64_t bytes;
         Result<ResidentNode> node;
     };
@@ -52,7 +53,7 @@ class NodeDecoding {
     // True if the node is given up.
     static bool takeFailure(CloudLoader& cloud, const Answer& answer, CachedNode& cached);
     void takeDecodedPicture(CloudLoader& cloud, Answer& answer, CachedNode& cached);
-    static void takeDecodedIntensity(Answer& answer, CachedNode& cached);
+    static void takeDecodedBlock(Answer& answer, CachedNode& cached);
 
     NodeDecoder& decoder_;
     NodeCache& cache_;

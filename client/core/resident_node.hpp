@@ -11,10 +11,11 @@
 //
 //   low word: z_low << 20 | y_low << 10 | x_low, each positionShift bits
 //
-// A node has colour words (clouds with RGB), intensities (clouds whose main colour is intensity, or when the
-// style asks for it), both, or neither.
+// A node has colour words (clouds with RGB), or a column of intensities (clouds whose main colour is
+// intensity), or neither. Further attributes come by themselves, as NodeColumns.
 #pragma once
 
+#include "client/core/node_columns.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_points.hpp"
 #include "shared/geometry/node_key.hpp"
@@ -36,12 +37,13 @@ struct ResidentNode {
     std::vector<std::uint32_t> positionWords;    // 2 × pointCount
     std::vector<std::uint32_t> positionLowWords; // pointCount if positionShift > 0, else empty
     std::vector<std::uint32_t> colourWords;      // pointCount: R | G << 8 | B << 16 | 255 << 24; or empty
-    std::vector<float> intensity;                // pointCount raw intensities; or empty
+    std::uint32_t shownUnit = 0; // what its file shows is a byte of the colour word times this; 0: not so
+    NodeColumns columns;         // pictureIntensity, pictureColours, or what a job without strata asked for
 
     // What the cache counts.
     std::uint64_t sizeBytes() const {
-        return sizeof *this +
-               4 * (positionWords.size() + positionLowWords.size() + colourWords.size() + intensity.size());
+        return sizeof *this + 4 * (positionWords.size() + positionLowWords.size() + colourWords.size()) +
+               columns.sizeBytes();
     }
 };
 
@@ -59,12 +61,20 @@ inline std::uint32_t packPositionLow(std::uint32_t xLow, std::uint32_t yLow, std
     return zLow << 20 | yLow << 10 | xLow;
 }
 
+// Colours as the file shows them, u16 a channel, which exact ones are coded against (DecodeJob::shown). Empty
+// if the node does not say (keepShownColours).
+Bytes shownColours(const ResidentNode& node);
+// Makes the node keep them: as a unit, or, where words have lost something, as a column.
+void keepShownColours(ResidentNode& node, const NodePicture& picture);
+
 // An id that no other ResidentNode of this process has. Any thread. Processes that decode for another one
 // (Web Workers) give no ids: who takes the node in sets it.
 std::uint64_t nextResidentNodeId();
 
-// Packs decoded points, with a new id. 16-bit colour channels keep their upper byte, 8-bit ones
-// (`colourIs8Bit`) are taken as they are, at most 255. `nodeBits` <= maxNodeBits.
+// 16-bit colour channels keep their upper byte, 8-bit ones (`is8Bit`) are taken as they are, at most 255.
+std::uint32_t colourWord(std::uint16_t red, std::uint16_t green, std::uint16_t blue, bool is8Bit);
+
+// Packs decoded points, with a new id. `nodeBits` <= maxNodeBits.
 ResidentNode packNode(const NodeKey& key, int nodeBits, std::uint32_t totalPoints, const NodePicture& picture,
                       PictureColour colour, bool colourIs8Bit);
 

@@ -14,11 +14,14 @@ constexpr double coarseHeights = 0.5;
 } // namespace
 
 Sight SelectionBuilder::sightOf(const HierarchyNode& node, Sight parent) {
-    if (parent == Sight::inside)
-        return parent;
-    Sight sight = frustum_.sightOf(node.geometry.box);
-    counters().nodesOutsideFrustum += sight == Sight::outside;
-    return sight;
+    Sight sight = parent;
+    if (parent != Sight::inside) {
+        sight = frustum_.sightOf(node.geometry.box);
+        counters().nodesOutsideFrustum += sight == Sight::outside;
+    }
+    bool clipped = sight != Sight::outside && isClipped(node.geometry.box);
+    counters().nodesClipped += clipped;
+    return clipped ? Sight::outside : sight;
 }
 
 bool SelectionBuilder::choose(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,

@@ -14,7 +14,8 @@ class SelectionBuilder {
     explicit SelectionBuilder(const SelectionInput& input) : input_(input), frustum_(input.view) {}
 
     FrameCounters& counters() { return result_.counters; }
-    // Counts it if it is outside. `parent`: the sight of a box around the node's.
+    // Outside, too, if clip boxes hide all of it. Counts it if it is outside. `parent`: the sight of a box
+    // around the node's.
     Sight sightOf(const HierarchyNode& node, Sight parent);
     double pixelsOf(const NodeGeometry& geometry) const {
         return projectedPixels(input_.view, input_.height, geometry.centre, geometry.radius);
@@ -38,7 +39,7 @@ class SelectionBuilder {
             if (!((entry.childMask >> c) & 1))
                 continue;
             NodeGeometry geometry = hierarchy.geometryOf(entry.key.child(c));
-            if (frustum_.intersects(geometry.box))
+            if (frustum_.intersects(geometry.box) && !isClipped(geometry.box))
                 largest = std::max(largest, sizeOf(geometry));
         }
         if (largest >= 0 && largest >= leastSize)
@@ -48,6 +49,7 @@ class SelectionBuilder {
     Selection finish();
 
   private:
+    bool isClipped(const BoxD& box) const { return input_.clips && input_.clips->clipVerdict(box).hidden; }
     void want(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,
               std::uint32_t here);
     void addChunk(const WantedChunk& chunk);

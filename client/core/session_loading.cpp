@@ -171,8 +171,8 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     case LoadKind::picture:
         decoding_.takePicture(cloud, node, loaded);
         break;
-    case LoadKind::intensity:
-        decoding_.takeIntensity(cloud, node, std::move(*loaded.bytes));
+    case LoadKind::attributes:
+        decoding_.takeBlock(cloud, node, loaded.item.key.block, std::move(*loaded.bytes));
         break;
     case LoadKind::points:
         break; // taken above

@@ -1,25 +1,19 @@
 // How points look. Plain values; the page, `--style` JSON and golden scenes set the same fields.
 #pragma once
 
+#include "client/core/colour_style.hpp"
+
 #include <array>
 #include <cstdint>
-#include <string>
 
 namespace stipple {
 
-enum class ColourMode : std::uint8_t { rgb, intensity, elevation };
 // `spacing`: by the target spacing of continuous detail; `adaptive`: by the spacing of the finest drawn node
 // where the point lies (Potree thesis §4.3.3).
 enum class PointSizeMode : std::uint8_t { fixed, world, spacing, adaptive };
 // Paraboloids are circles bent away from the camera: where they overlap, each pixel shows the point nearest
 // to it, as a Voronoi diagram does (Potree thesis §4.2.3). Splats take them as circles.
 enum class PointShape : std::uint8_t { square, circle, paraboloid };
-enum class GradientName : std::uint8_t { viridis, turbo, inferno, spectral, grey, terrain };
-
-struct Range {
-    double min = 0, max = 0; // min == max: taken from the cloud's statistics
-    friend bool operator==(const Range&, const Range&) = default;
-};
 
 struct EyeDomeLighting {
     bool enabled = true;
@@ -61,11 +55,7 @@ struct Splats {
 // more points than it pays for.
 enum class DelayedExpansion : std::uint8_t { off, on, automatic };
 
-struct Style {
-    ColourMode colourMode = ColourMode::rgb;
-    GradientName gradient = GradientName::viridis; // of intensity and elevation
-    Range intensityRange;                          // raw intensity
-    Range elevationRange;                          // world units
+struct Style : ColourStyle {
     PointSizeMode sizeMode = PointSizeMode::fixed;
     double sizePixels = 2;  // diameter, fixed mode
     double sizeWorld = 0.1; // diameter in world units, world mode

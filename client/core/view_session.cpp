@@ -2,11 +2,15 @@
 
 #include "client/core/frame_planner.hpp"
 #include "client/core/frame_time_controller.hpp"
+#include "client/core/frustum.hpp"
+#include "client/core/plan_painter.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/session_loading.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 namespace stipple {
 
@@ -17,7 +21,7 @@ namespace {
 class Session final : public ViewSession {
   public:
     Session(NodeDecoder& decoder, const SessionLimits& limits, Now now)
-        : limits_(limits), loading_(decoder, counters_, now) {}
+        : limits_(limits), loading_(decoder, counters_, now), painter_(counters_) {}
 
     CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) override {
         dirty_ = true;
@@ -67,12 +71,12 @@ class Session final : public ViewSession {
     }
     const Camera& camera() const override { return camera_; }
     void setStyle(const Style& style) override {
-        if (style == style_)
+        Result<ClipBoxes> clips = ClipBoxes::make(style.clipBoxes);
+        if (style == style_ || !clips.ok())
             return;
-        // Nothing else of a style changes what has to be loaded.
-        bool sameNeeds = style.colourMode == style_.colourMode && style.detail == style_.detail;
-        (sameNeeds ? planDirty_ : dirty_) = true;
+        (loadsAlike(style, style_) ? planDirty_ : dirty_) = true;
         style_ = style;
+        clips_ = std::move(*clips);
     }
     const Style& style() const override { return style_; }
     void setLimits(const SessionLimits& limits) override {
@@ -135,6 +139,17 @@ class Session final : public ViewSession {
 
   private:
     static bool shown(const CloudLoader& cloud) { return cloud.ready() && cloud.state.visible; }
+    // Whether both styles want the same nodes and attributes.
+    static bool loadsAlike(const Style& a, const Style& b) {
+        Style other = b;
+        other.gradient = a.gradient;
+        other.highlight = a.highlight;
+        other.intensityRange = a.intensityRange;
+        other.elevationRange = a.elevationRange;
+        other.levelRange = a.levelRange;
+        other.attributeRange = a.attributeRange;
+        return static_cast<const ColourStyle&>(a) == other && a.detail == b.detail;
+    }
 
     // --- selecting and asking --------------------------------------------------------------------------
 
@@ -146,9 +161,14 @@ class Session final : public ViewSession {
 
         std::vector<SelectionCloud> inputs;
         selectionIds_.clear();
+        hiddenNodes_ = 0;
         for (auto& [id, cloud] : loading_.clouds()) {
             if (!shown(cloud))
                 continue;
+            if (hidesAll(style_, *cloud.opened.metadata)) {
+                hiddenNodes_ += cloud.hierarchy.size();
+                continue;
+            }
             selectionIds_.push_back(id);
             inputs.push_back({&cloud.hierarchy, cloud.residency, bytesPerPoint(cloud)});
         }
@@ -166,13 +186,18 @@ class Session final : public ViewSession {
         input.minNodePixels = limits_.minNodePixels;
         input.weights = limits_.weights;
         input.detailPixels = isContinuous ? style_.detail.spacingPixels * coarser : 0;
+        input.clips = clips_.hidesPoints() ? &clips_ : nullptr;
         selection_ = select(input);
         selection_.counters.coarserForTime = coarser;
         selection_.counters.complete &= !loading_.anyOpening();
+        selection_.counters.nodesHidden += hiddenNodes_;
+        findExact();
 
         // Least recently used are then the finest first, the root last.
         for (auto node = selection_.nodes.rbegin(); node != selection_.nodes.rend(); ++node)
             loading_.cache().touch(cacheKey(*node), frame_);
+        if (loading_.cache().sizeBytes() > limits_.cacheBytes)
+            dropUnused();
         for (CacheKey key : loading_.cache().evict(limits_.cacheBytes, frame_)) {
             ++counters_.nodesEvicted;
             if (auto cloud = loading_.clouds().find(key.cloud); cloud != loading_.clouds().end())
@@ -184,19 +209,72 @@ class Session final : public ViewSession {
     // What the style wants of each cloud. Where that changes, what is drawable does too.
     void updateNeeds() {
         for (auto& [id, cloud] : loading_.clouds()) {
-            bool needs =
-                cloud.ready() && style_.colourMode == ColourMode::intensity && cloud.intensityBlock >= 0;
-            if (needs == cloud.needsIntensity)
+            AttributeNeeds needs = cloud.ready() ? needsOf(style_, *cloud.opened.metadata) : AttributeNeeds{};
+            if (needs == cloud.needs)
                 continue;
-            cloud.needsIntensity = needs;
+            cloud.needs = std::move(needs);
             for (std::uint32_t node = 0; node < cloud.residency.size(); ++node)
                 cloud.updateResidency(node, loading_.cache().find({id, node}));
         }
     }
 
-    static std::uint32_t bytesPerPoint(const CloudLoader& cloud) {
-        bool wide = cloud.opened.metadata->rootCube.bits > positionWordBits;
-        return 12u + (wide ? 4u : 0u) + (cloud.needsIntensity ? 4u : 0u);
+    std::uint32_t bytesPerPoint(const CloudLoader& cloud) const {
+        const CloudMetadata& metadata = *cloud.opened.metadata;
+        bool wide = metadata.rootCube.bits > positionWordBits;
+        bool painted = style_.colourMode != ColourMode::rgb || cloud.needs.exactBlock >= 0 ||
+                       !style_.clipBoxes.empty() || hidesPoints(style_);
+        return 12u + (wide ? 4u : 0u) + (painted ? 4u : 0u) + columnBytes(cloud.needs, metadata) +
+               (cloud.needs.exactBlock >= 0 ? 4u : 0u);
+    }
+
+    // Attributes that the style does not use are kept while there is room, and are the first to go.
+    void dropUnused() {
+        loading_.cache().visit([&](CacheKey key, CachedNode& cached) {
+            auto cloud = loading_.clouds().find(key.cloud);
+            if (cloud == loading_.clouds().end())
+                return false;
+            const AttributeNeeds& needs = cloud->second.needs;
+            auto dropped = std::erase_if(cached.blocks, [&](const CachedBlock& one) {
+                return !one.decoding && one.block != needs.exactBlock &&
+                       std::find(needs.blocks.begin(), needs.blocks.end(), one.block) == needs.blocks.end();
+            });
+            counters_.columnsDropped += dropped;
+            return dropped > 0;
+        });
+    }
+
+    // Which of the selected nodes have nothing coarse left to show: they and their children, as far as they
+    // are in view, are drawn whole. Their exact colours are wanted.
+    void findExact() {
+        exact_.clear();
+        std::set<std::pair<std::uint32_t, std::uint32_t>> whole;
+        auto isWhole = [&](const SelectedNode& selected) {
+            const CloudLoader& cloud = loading_.clouds().at(selectionIds_[selected.cloud]);
+            return cloud.needs.exactBlock >= 0 &&
+                   selected.drawPoints == cloud.hierarchy.node(selected.node).entry.pointCount;
+        };
+        for (const SelectedNode& selected : selection_.nodes)
+            if (isWhole(selected))
+                whole.emplace(selected.cloud, selected.node);
+        if (whole.empty())
+            return;
+        Frustum frustum(view_);
+        for (const auto& [cloudIndex, node] : whole) {
+            const CloudLoader& cloud = loading_.clouds().at(selectionIds_[cloudIndex]);
+            const HierarchyNode& known = cloud.hierarchy.node(node);
+            auto exactBlock = static_cast<std::size_t>(cloud.needs.exactBlock);
+            if (known.childrenState != ChildrenState::known || known.entry.attributeBytes[exactBlock] == 0)
+                continue;
+            bool coarse = std::any_of(
+                known.children.begin(), known.children.end(), [&, &index = cloudIndex](int child) {
+                    if (child < 0 || whole.contains({index, static_cast<std::uint32_t>(child)}))
+                        return false;
+                    const BoxD& box = cloud.hierarchy.node(static_cast<std::size_t>(child)).geometry.box;
+                    return frustum.intersects(box) && !clips_.clipVerdict(box).hidden;
+                });
+            if (!coarse)
+                exact_.emplace(cloudIndex, node);
+        }
     }
 
     template <class Node>
@@ -221,7 +299,13 @@ class Session final : public ViewSession {
             const CachedNode* cached = loading_.cache().find(cacheKey(wanted));
             if (auto item = cloud.pictureItem(wanted.node, wanted.strata, cached))
                 items.push_back(std::move(*item));
-            if (auto item = cloud.intensityItem(wanted.node, cached))
+            cloud.addBlockItems(wanted.node, cached, items);
+        }
+        for (const auto& [cloudIndex, node] : exact_) {
+            CloudLoader& cloud = loading_.clouds().at(selectionIds_[cloudIndex]);
+            const CachedNode* cached = loading_.cache().find({selectionIds_[cloudIndex], node});
+            if (auto item = cloud.blockItem(node, cloud.needs.exactBlock, cached);
+                item && !cloud.residency[node].failed)
                 items.push_back(std::move(*item));
         }
         loading_.want(std::move(items));
@@ -239,6 +323,7 @@ class Session final : public ViewSession {
         for (CloudId id : selectionIds_)
             metadata.push_back(loading_.clouds().at(id).opened.metadata);
         next.style = resolvedStyle(style_, metadata);
+        painter_.setStyle(next.style);
         next.detailPixels = selection_.counters.detailPixels;
         next.counters = selection_.counters;
         next.counters.passesRun = plan_.counters.passesRun;
@@ -247,11 +332,25 @@ class Session final : public ViewSession {
             if (selected.drawPoints == 0)
                 continue;
             CloudLoader& cloud = loading_.clouds().at(selectionIds_[selected.cloud]);
-            const CachedNode* cached = loading_.cache().find(cacheKey(selected));
+            CacheKey key = cacheKey(selected);
+            CachedNode* cached = loading_.cache().find(key);
+            bool exact =
+                exact_.contains({selected.cloud, selected.node}) && cached->hasBlock(cloud.needs.exactBlock);
+            if (painter_.paint(cloud, selected.node, exact, *cached))
+                loading_.cache().recount(key);
+            if (cached->paint && cached->paint->hidden == cached->node->pointCount) {
+                ++next.counters.nodesHidden;
+                --next.counters.nodesDrawn;
+                next.counters.pointsDrawn -= selected.drawPoints;
+                continue;
+            }
             next.nodes.push_back(
                 planNode(cached->node, selected.drawPoints, *cloud.opened.metadata, view_.eye));
             next.nodes.back().cloud = cloud.state.id;
             next.nodes.back().density = cloud.hierarchy.densityOf(selected.node);
+            next.nodes.back().paint = cached->paint;
+            next.counters.pointsHidden += cached->paint ? cached->paint->hidden : 0;
+            next.counters.nodesExact += exact;
         }
         bool differs = !drawnOnce_ || !samePicture(next, plan_);
         drawnOnce_ = true;
@@ -261,7 +360,7 @@ class Session final : public ViewSession {
 
     static bool samePicture(const FramePlan& a, const FramePlan& b) {
         auto sameNode = [](const DrawNode& x, const DrawNode& y) {
-            return x.node->id == y.node->id && x.pointCount == y.pointCount;
+            return x.node->id == y.node->id && x.colourId() == y.colourId() && x.pointCount == y.pointCount;
         };
         return a.width == b.width && a.height == b.height && a.view == b.view && a.style == b.style &&
                a.detailPixels == b.detailPixels &&
@@ -273,6 +372,7 @@ class Session final : public ViewSession {
         if (std::erase_if(plan_.nodes, [&](const DrawNode& node) { return node.cloud == id; }) > 0)
             drawnOnce_ = false; // the next plan differs from the last picture
         selection_ = {};
+        exact_.clear();
         selectionIds_.clear();
         dirty_ = true;
     }
@@ -285,6 +385,8 @@ class Session final : public ViewSession {
     FrameTimeController pace_;
     SessionCounters counters_;
     SessionLoading loading_;
+    PlanPainter painter_;
+    ClipBoxes clips_; // of style_
 
     bool dirty_ = true;      // a selection could come out differently
     bool planDirty_ = false; // the style changed in what shows only
@@ -292,6 +394,9 @@ class Session final : public ViewSession {
     ViewTransform view_;
     Selection selection_;
     std::vector<CloudId> selectionIds_; // of selection_'s cloud indices
+    std::uint64_t hiddenNodes_ = 0;     // known, of clouds of which the style hides every point
+    // Nodes (cloud index, node) of which and below which nothing that shows is coarse.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> exact_;
     FramePlan plan_;
     bool drawnOnce_ = false;
 };

@@ -69,7 +69,7 @@ class ViewSession {
     virtual void setViewport(int width, int height) = 0; // pixels, > 0; 1280 × 720 at first
     virtual void setCamera(const Camera& camera) = 0;    // one that is not usable (isUsable) is passed over
     virtual const Camera& camera() const = 0;
-    virtual void setStyle(const Style& style) = 0;
+    virtual void setStyle(const Style& style) = 0; // one whose clip boxes are not usable is passed over
     virtual const Style& style() const = 0;
     virtual void setLimits(const SessionLimits& limits) = 0;
     virtual const SessionLimits& limits() const = 0;

@@ -1,8 +1,8 @@
 #include "client/measure/flip.hpp"
 
+#include "client/core/gradients.hpp"
 #include "client/measure/colour_spaces.hpp"
 #include "client/measure/flip_filters.hpp"
-#include "client/render/gradients.hpp"
 
 #include <algorithm>
 #include <array>

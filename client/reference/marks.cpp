@@ -1,9 +1,11 @@
 #include "client/reference/marks.hpp"
 
-#include "client/render/gradients.hpp"
+#include "client/core/gradients.hpp"
 #include "shared/base/bytes.hpp"
+#include "shared/points/point_classes.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 namespace stipple::reference {
@@ -11,46 +13,31 @@ namespace {
 
 constexpr Colour withoutValue{180, 180, 180};
 
-Vec3l worldOf(const Points& points, std::size_t i) {
-    const Grid& grid = *points.grid;
-    const Vec3i& p = points.batch->positions[i];
-    Vec3l world;
-    for (int axis = 0; axis < 3; ++axis)
-        world[axis] = static_cast<long double>(grid.offset[axis]) +
-                      static_cast<long double>(grid.scale[axis]) * static_cast<long double>(p[axis]);
-    return world;
-}
-
-int columnOf(const Points& points, std::string_view name) {
-    for (std::size_t a = 0; a < points.attributes.size(); ++a)
-        if (points.attributes[a].name == name)
-            return static_cast<int>(a);
-    return -1;
-}
-
-double valueOf(const Points& points, int column, std::size_t i) {
-    const PointBatch& batch = *points.batch;
-    switch (points.attributes[static_cast<std::size_t>(column)].type) {
+double storedOf(const Points& points, int column, std::size_t i) {
+    const Attribute& attribute = points.attributes[static_cast<std::size_t>(column)];
+    const std::uint8_t* at =
+        points.batch->columns[static_cast<std::size_t>(column)].data() + i * attribute.size();
+    switch (attribute.type) {
     case AttributeType::u8:
-        return batch.value<std::uint8_t>(column, i);
+        return loadLe<std::uint8_t>(at);
     case AttributeType::i8:
-        return batch.value<std::int8_t>(column, i);
+        return loadLe<std::int8_t>(at);
     case AttributeType::u16:
-        return batch.value<std::uint16_t>(column, i);
+        return loadLe<std::uint16_t>(at);
     case AttributeType::i16:
-        return batch.value<std::int16_t>(column, i);
+        return loadLe<std::int16_t>(at);
     case AttributeType::u32:
-        return batch.value<std::uint32_t>(column, i);
+        return loadLe<std::uint32_t>(at);
     case AttributeType::i32:
-        return batch.value<std::int32_t>(column, i);
+        return loadLe<std::int32_t>(at);
     case AttributeType::u64:
-        return static_cast<double>(batch.value<std::uint64_t>(column, i));
+        return static_cast<double>(loadLe<std::uint64_t>(at));
     case AttributeType::i64:
-        return static_cast<double>(batch.value<std::int64_t>(column, i));
+        return static_cast<double>(loadLe<std::int64_t>(at));
     case AttributeType::f32:
-        return double{batch.value<float>(column, i)};
+        return double{loadLe<float>(at)};
     case AttributeType::f64:
-        return batch.value<double>(column, i);
+        return loadLe<double>(at);
     }
     return 0;
 }
@@ -73,8 +60,11 @@ template <class Value>
 std::vector<Colour> ramp(const Style& style, const Range& range, std::size_t count, const Value& value) {
     const GradientTable& table = gradientTable(style.gradient);
     std::vector<Colour> colours(count);
-    for (std::size_t i = 0; i < count; ++i)
-        colours[i] = gradientAt(table, (value(i) - range.min) / (range.max - range.min));
+    for (std::size_t i = 0; i < count; ++i) {
+        double at = value(i);
+        colours[i] =
+            std::isnan(at) ? withoutValue : gradientAt(table, (at - range.min) / (range.max - range.min));
+    }
     return colours;
 }
 
@@ -85,10 +75,10 @@ std::vector<Colour> rgbOf(const Points& points) {
                                      columnOf(points, attribute_names::green),
                                      columnOf(points, attribute_names::blue)};
     if (std::find(columns.begin(), columns.end(), -1) != columns.end())
-        return colours;
+        return {};
     for (std::size_t i = 0; i < colours.size(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {
-            double value = valueOf(points, columns[c], i);
+            double value = storedOf(points, columns[c], i);
             colours[i][c] =
                 static_cast<float>(points.colourIs8Bit ? std::min(value, 255.0) : std::floor(value / 256));
         }
@@ -97,13 +87,66 @@ std::vector<Colour> rgbOf(const Points& points) {
 
 } // namespace
 
+int columnOf(const Points& points, std::string_view name) {
+    auto same = [&](const std::string& other) {
+        return std::equal(
+            other.begin(), other.end(), name.begin(), name.end(),
+            [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); });
+    };
+    for (std::size_t a = 0; a < points.attributes.size(); ++a)
+        if (same(points.attributes[a].name))
+            return static_cast<int>(a);
+    return -1;
+}
+
+double meaningOf(const Points& points, int column, std::size_t i) {
+    const Attribute& attribute = points.attributes[static_cast<std::size_t>(column)];
+    double stored = storedOf(points, column, i);
+    return attribute.noData && stored == *attribute.noData ? std::nan("")
+                                                           : attribute.offset + attribute.scale * stored;
+}
+
+Vec3l worldOf(const Points& points, std::size_t i) {
+    const Grid& grid = *points.grid;
+    const Vec3i& p = points.batch->positions[i];
+    Vec3l world;
+    for (int axis = 0; axis < 3; ++axis)
+        world[axis] = static_cast<long double>(grid.offset[axis]) +
+                      static_cast<long double>(grid.scale[axis]) * static_cast<long double>(p[axis]);
+    return world;
+}
+
 std::vector<std::string_view> neededAttributes(const Style& style, const CloudMetadata& metadata) {
     using namespace attribute_names;
-    if (style.colourMode == ColourMode::rgb && metadata.pictureColour == PictureColour::rgb)
-        return {red, green, blue};
-    if (style.colourMode == ColourMode::intensity && metadata.schema.find(intensity) >= 0)
-        return {intensity};
-    return {};
+    std::vector<std::string_view> wanted;
+    auto add = [&](ColourMode mode, const std::string& attribute) {
+        if (mode == ColourMode::rgb) {
+            if (metadata.pictureColour == PictureColour::rgb)
+                wanted.insert(wanted.end(), {red, green, blue});
+        } else if (std::string_view name = attributeOf(mode, attribute); !name.empty()) {
+            wanted.push_back(name);
+        }
+    };
+    add(style.colourMode, style.attribute);
+    if (style.colourMode == ColourMode::mix)
+        for (const MixedColour& one : style.mix)
+            add(one.mode, one.attribute);
+    if (style.hiddenClasses.any())
+        wanted.push_back(classification);
+    for (const AttributeFilter& filter : style.filters)
+        wanted.push_back(filter.attribute);
+    Points cloud;
+    cloud.attributes = metadata.schema.attributes;
+    std::vector<std::string_view> had;
+    for (std::string_view name : wanted) {
+        int column = columnOf(cloud, name);
+        if (column < 0)
+            continue;
+        std::string_view known = metadata.schema.attributes[static_cast<std::size_t>(column)].name;
+        if (std::find(had.begin(), had.end(), known) == had.end())
+            had.push_back(known);
+    }
+    return had;
 }
 
 double diameterOf(const Style& style, const View& view, double distance, double spacing) {
@@ -117,30 +160,91 @@ double diameterOf(const Style& style, const View& view, double distance, double 
     return std::clamp(wanted, least, most);
 }
 
-std::vector<Colour> coloursOf(const Style& style, const Points& points) {
+namespace {
+
+double levelOf(const Style& style, const Points& points, std::size_t i) {
+    if (style.detail.mode == DetailMode::discrete)
+        return points.level;
+    // client/core/continuous_detail.hpp
+    return points.level - 1 +
+           std::log(1 + 3 * (static_cast<double>(i) + 0.5) / points.nodePoints) / std::log(4.0);
+}
+
+// Empty: the cloud has nothing of that kind.
+std::vector<Colour> coloursOf(const Style& style, const Points& points, ColourMode mode,
+                              const std::string& attribute, const Range& range) {
     std::size_t count = points.batch->size();
-    switch (style.colourMode) {
-    case ColourMode::rgb:
+    if (mode == ColourMode::rgb)
         return rgbOf(points);
-    case ColourMode::intensity: {
-        int column = columnOf(points, attribute_names::intensity);
-        if (column < 0)
-            return std::vector<Colour>(count, withoutValue);
-        return ramp(style, style.intensityRange, count,
-                    [&](std::size_t i) { return valueOf(points, column, i); });
-    }
-    case ColourMode::elevation:
-        return ramp(style, style.elevationRange, count,
+    if (mode == ColourMode::elevation)
+        return ramp(style, range, count,
                     [&](std::size_t i) { return static_cast<double>(worldOf(points, i).z); });
+    if (mode == ColourMode::level)
+        return ramp(style, range, count, [&](std::size_t i) { return levelOf(style, points, i); });
+    int column = columnOf(points, attributeOf(mode, attribute));
+    if (column < 0)
+        return {};
+    if (mode != ColourMode::classification)
+        return ramp(style, range, count, [&](std::size_t i) { return meaningOf(points, column, i); });
+    std::vector<Colour> colours(count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            colours[i][c] = classColour(static_cast<std::uint8_t>(meaningOf(points, column, i)))[c];
+    return colours;
+}
+
+std::vector<Colour> mixedOf(const Style& style, const Points& points) {
+    std::vector<Colour> sum(points.batch->size());
+    std::vector<std::vector<Colour>> parts;
+    std::vector<double> weights;
+    double all = 0;
+    for (const MixedColour& one : style.mix) {
+        std::vector<Colour> colours = coloursOf(style, points, one.mode, one.attribute, one.range);
+        if (colours.empty())
+            continue;
+        parts.push_back(std::move(colours));
+        weights.push_back(one.weight);
+        all += one.weight;
     }
-    return std::vector<Colour>(count, withoutValue);
+    for (std::size_t part = 0; part < parts.size(); ++part)
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                sum[i][c] += static_cast<float>(weights[part] / all) * parts[part][i][c];
+    return parts.empty() ? std::vector<Colour>() : sum;
+}
+
+Range rangeOf(const Style& style) {
+    switch (style.colourMode) {
+    case ColourMode::intensity:
+        return style.intensityRange;
+    case ColourMode::elevation:
+        return style.elevationRange;
+    case ColourMode::level:
+        return style.levelRange;
+    default:
+        return style.attributeRange;
+    }
+}
+
+} // namespace
+
+std::vector<Colour> coloursOf(const Style& style, const Points& points) {
+    std::vector<Colour> colours =
+        style.colourMode == ColourMode::mix
+            ? mixedOf(style, points)
+            : coloursOf(style, points, style.colourMode, style.attribute, rangeOf(style));
+    if (colours.empty())
+        colours.assign(points.batch->size(), withoutValue);
+    return colours;
 }
 
 void appendMarks(const View& view, const Style& style, const Points& points, std::vector<Mark>& marks) {
     std::vector<Colour> colours = coloursOf(style, points);
+    highlight(style, points, colours);
+    std::vector<bool> shown = shownOf(style, points);
     for (std::size_t i = 0; i < points.batch->size(); ++i) {
         Place at;
-        if (!place(view, worldOf(points, i), at))
+        if (!shown[i] || !place(view, worldOf(points, i), at))
             continue;
         double spacing = points.spacings.empty() ? 0 : points.spacings[i];
         double diameter = diameterOf(style, view, at.distance, spacing), reach = diameter / 2 + 1;

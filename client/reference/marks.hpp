@@ -21,6 +21,9 @@ struct Points {
     std::uint64_t firstOrder = 0;      // of the batch's first point; no two points have one order
     // Per point: spacing of the finest node that holds it, world units. Needed for adaptive sizes alone.
     std::vector<double> spacings;
+    // Of the node that the batch is, in progressive order.
+    int level = 0;
+    double nodePoints = 1;
 };
 
 // Levels 0..255, not rounded.
@@ -41,8 +44,20 @@ std::vector<std::string_view> neededAttributes(const Style& style, const CloudMe
 // Diameter in pixels of a point that far away; `spacing` as in Points::spacings.
 double diameterOf(const Style& style, const View& view, double distance, double spacing = 0);
 
-// Colours of all points. `style` has ranges (min < max). A cloud without the attribute is light grey.
+// Colours of all points. `style` has ranges (min < max). A cloud without the attribute is light grey, and so
+// is a point without a value.
 std::vector<Colour> coloursOf(const Style& style, const Points& points);
+
+// Which points filters, hidden classes and clip boxes leave (reference/hiding.cpp).
+std::vector<bool> shownOf(const Style& style, const Points& points);
+// Tints what lies in highlight boxes.
+void highlight(const Style& style, const Points& points, std::vector<Colour>& colours);
+
+// Column of the attribute of that name, upper or lower case; -1: none.
+int columnOf(const Points& points, std::string_view name);
+// What a value means (offset + scale × stored; the first component); NaN for "no value".
+double meaningOf(const Points& points, int column, std::size_t i);
+Vec3l worldOf(const Points& points, std::size_t i);
 
 // Appends the marks of the points that may touch the picture.
 void appendMarks(const View& view, const Style& style, const Points& points, std::vector<Mark>& marks);

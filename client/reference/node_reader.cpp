@@ -81,7 +81,8 @@ Status readAll(CloudReader& reader, std::span<const int> attributes, WorkQueue& 
 } // namespace
 
 Status visitPoints(CloudReader& reader, std::span<const int> attributes, int threads,
-                   const std::function<void(const PointBatch& points, std::uint64_t firstOrder)>& visit) {
+                   const std::function<void(const NodeKey& key, const PointBatch& points,
+                                            std::uint64_t firstOrder)>& visit) {
     WorkQueue queue(2 * static_cast<std::size_t>(threads));
     const CloudMetadata& metadata = reader.metadata();
     std::vector<std::jthread> decoders;
@@ -90,7 +91,7 @@ Status visitPoints(CloudReader& reader, std::span<const int> attributes, int thr
             while (std::optional<Work> work = queue.take()) {
                 auto points = decodeNode(metadata, work->bytes);
                 if (points.ok())
-                    visit(*points, work->firstOrder);
+                    visit(work->bytes.entry.key, *points, work->firstOrder);
                 else
                     queue.fail(points.error());
             }

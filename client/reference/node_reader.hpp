@@ -11,7 +11,8 @@ namespace stipple::reference {
 // `visit` gets each node's points with the columns of `attributes` (indices into the schema) and the number
 // of points of all nodes before it; it runs on any of `threads` threads, several at a time. Returns the first
 // error.
-Status visitPoints(CloudReader& reader, std::span<const int> attributes, int threads,
-                   const std::function<void(const PointBatch& points, std::uint64_t firstOrder)>& visit);
+Status visitPoints(
+    CloudReader& reader, std::span<const int> attributes, int threads,
+    const std::function<void(const NodeKey& key, const PointBatch& points, std::uint64_t firstOrder)>& visit);
 
 } // namespace stipple::reference

@@ -52,26 +52,29 @@ Status drawAll(CloudReader& reader, Reading reading, std::vector<std::unique_ptr
         STIPPLE_TRY(nodes, FinestNodes::of(reader));
         finest = std::move(nodes);
     }
-    return visitPoints(reader, attributes, threads, [&](const PointBatch& batch, std::uint64_t firstOrder) {
-        Points points = shared;
-        points.batch = &batch;
-        points.firstOrder = firstOrder;
-        if (finest)
-            points.spacings = finest->spacingsAt(batch);
-        std::vector<Mark> marks;
-        for (auto& easel : easels) {
-            if (!wants(easel->job, reading))
-                continue;
-            marks.clear();
-            appendMarks(easel->job.view, easel->job.style, points, marks);
-            std::lock_guard lock(easel->mutex);
-            if (reading == Reading::nearest)
-                easel->canvas.draw(marks, drawnShape(easel->job.style));
-            else
-                easel->canvas.blend(marks, easel->job.style);
-        }
-        read(batch.size());
-    });
+    return visitPoints(reader, attributes, threads,
+                       [&](const NodeKey& key, const PointBatch& batch, std::uint64_t firstOrder) {
+                           Points points = shared;
+                           points.batch = &batch;
+                           points.level = key.level;
+                           points.nodePoints = static_cast<double>(batch.size());
+                           points.firstOrder = firstOrder;
+                           if (finest)
+                               points.spacings = finest->spacingsAt(batch);
+                           std::vector<Mark> marks;
+                           for (auto& easel : easels) {
+                               if (!wants(easel->job, reading))
+                                   continue;
+                               marks.clear();
+                               appendMarks(easel->job.view, easel->job.style, points, marks);
+                               std::lock_guard lock(easel->mutex);
+                               if (reading == Reading::nearest)
+                                   easel->canvas.draw(marks, drawnShape(easel->job.style));
+                               else
+                                   easel->canvas.blend(marks, easel->job.style);
+                           }
+                           read(batch.size());
+                       });
 }
 
 Status checkJobs(std::span<const Job> jobs) {

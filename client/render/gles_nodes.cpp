@@ -7,11 +7,10 @@
 namespace stipple::gles {
 
 // Fills `buffer` with `values` unless it is filled already, and leaves it bound. False: nothing to do.
-template <class T>
-bool NodeBuffers::upload(Entry& entry, Buffer& buffer, const std::vector<T>& values) {
+bool NodeBuffers::upload(Entry& entry, Buffer& buffer, const std::vector<std::uint32_t>& values) {
     if (buffer || values.empty())
         return false;
-    std::uint64_t size = values.size() * sizeof(T);
+    std::uint64_t size = values.size() * sizeof values[0];
     glBindBuffer(GL_ARRAY_BUFFER, buffer.make());
     glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(size), values.data(), GL_STATIC_DRAW);
     entry.bytes += size;
@@ -20,7 +19,8 @@ bool NodeBuffers::upload(Entry& entry, Buffer& buffer, const std::vector<T>& val
     return true;
 }
 
-void NodeBuffers::bind(const ResidentNode& node, ColourSource source) {
+void NodeBuffers::bind(const DrawNode& drawn) {
+    const ResidentNode& node = *drawn.node;
     Entry& entry = entries_[node.id];
     entry.lastFrame = frame_;
     ++boundInFrame_;
@@ -33,13 +33,22 @@ void NodeBuffers::bind(const ResidentNode& node, ColourSource source) {
         glEnableVertexAttribArray(positionLowLocation);
         glVertexAttribIPointer(positionLowLocation, 1, GL_UNSIGNED_INT, 0, nullptr);
     }
-    if (source == ColourSource::words && upload(entry, entry.colours, node.colourWords)) {
+    if (entry.colourId != drawn.colourId())
+        bindColours(entry, drawn);
+}
+
+void NodeBuffers::bindColours(Entry& entry, const DrawNode& drawn) {
+    bytes_ -= entry.colourBytes;
+    entry.bytes -= entry.colourBytes;
+    entry.colours = Buffer();
+    entry.colourId = drawn.colourId();
+    const std::vector<std::uint32_t>& words = drawn.colourWords();
+    entry.colourBytes = words.size() * sizeof words[0];
+    if (upload(entry, entry.colours, words)) {
         glEnableVertexAttribArray(colourLocation);
         glVertexAttribPointer(colourLocation, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
-    }
-    if (source == ColourSource::intensity && upload(entry, entry.intensities, node.intensity)) {
-        glEnableVertexAttribArray(intensityLocation);
-        glVertexAttribPointer(intensityLocation, 1, GL_FLOAT, GL_FALSE, 0, nullptr);
+    } else {
+        glDisableVertexAttribArray(colourLocation); // plain
     }
 }
 

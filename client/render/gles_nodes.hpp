@@ -1,5 +1,5 @@
-// The nodes on the GPU: a vertex array and buffers for each ResidentNode, keyed by its id. Only the
-// attributes in use are uploaded. Nodes that are not drawn are kept up to a limit in bytes, least recently
+// The nodes on the GPU: a vertex array and buffers for each ResidentNode, keyed by its id; the colours as
+// they are painted. Nodes that are not drawn are kept up to a limit in bytes, least recently
 // drawn first to go.
 #pragma once
 
@@ -14,17 +14,13 @@ namespace stipple::gles {
 inline constexpr std::uint64_t maxIdleNodeBytes = 64ull << 20;
 
 // Locations of points.vert.glsl.
-enum PointAttribute : GLuint {
-    positionLocation = 0,
-    positionLowLocation = 1,
-    colourLocation = 2,
-    intensityLocation = 3
-};
+enum PointAttribute : GLuint { positionLocation = 0, positionLowLocation = 1, colourLocation = 2 };
 
 class NodeBuffers {
   public:
-    // Binds the node's vertex array with what `source` needs, uploading what is missing.
-    void bind(const ResidentNode& node, ColourSource source);
+    // Binds the node's vertex array, uploading what is missing. Colours are held for one paint of a node at a
+    // time.
+    void bind(const DrawNode& drawn);
 
     // Ends a frame: frees nodes that bind() has not seen in it, as far as the limit asks. A frame without
     // nodes frees everything. Returns whether something was uploaded since the last call.
@@ -35,13 +31,15 @@ class NodeBuffers {
   private:
     struct Entry {
         VertexArray array;
-        Buffer positions, lows, colours, intensities;
+        Buffer positions, lows, colours;
+        std::uint64_t colourId = 0; // DrawNode::colourId of what `colours` holds
+        std::uint64_t colourBytes = 0;
         std::uint64_t bytes = 0;
         std::uint64_t lastFrame = 0;
     };
 
-    template <class T>
-    bool upload(Entry& entry, Buffer& buffer, const std::vector<T>& values);
+    bool upload(Entry& entry, Buffer& buffer, const std::vector<std::uint32_t>& values);
+    void bindColours(Entry& entry, const DrawNode& drawn);
 
     std::unordered_map<std::uint64_t, Entry> entries_;
     std::uint64_t bytes_ = 0;

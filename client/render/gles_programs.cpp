@@ -1,7 +1,6 @@
 #include "client/render/gles_programs.hpp"
 
 #include "client/render/drawn_octree.hpp"
-#include "client/render/gradients.hpp"
 #include "client/render/shader_texts.hpp"
 #include "shared/base/text.hpp"
 
@@ -10,8 +9,7 @@ namespace stipple::gles {
 namespace {
 
 std::string definesFor(const PointVariant& variant) {
-    std::string defines = cat("#define GRADIENT_ENTRIES ", gradientEntries, "\n");
-    defines += variant.lowWords ? "#define LOW_WORDS\n" : "";
+    std::string defines = variant.lowWords ? "#define LOW_WORDS\n" : "";
     defines += variant.circle ? "#define CIRCLE\n" : "";
     defines += variant.paraboloid ? "#define PARABOLOID\n" : "";
     defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
@@ -64,8 +62,6 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.lowY = at("uLowY");
     made.highY = at("uHighY");
     made.origin = at("uOrigin");
-    made.colourSource = at("uColourSource");
-    made.ramp = at("uRamp");
     made.centre = at("uCentre");
     made.nearFar = at("uNearFar");
     made.nearBits = at("uNearBits");
@@ -75,7 +71,6 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.size64 = at("uSize64");
     made.worldSize64 = at("uWorldSize64");
     made.sizeRange64 = at("uSizeRange64");
-    made.gradient = at("uGradient");
     made.rank = at("uRank");
     made.continuous = at("uContinuous");
     made.growth = at("uGrowth");
@@ -111,7 +106,6 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform1f(size64, static_cast<float>(frame.size64));
     glUniform1f(worldSize64, frame.worldSize64);
     glUniform2f(sizeRange64, static_cast<float>(frame.minSize64), static_cast<float>(frame.maxSize64));
-    glUniform1i(gradient, gradientUnit);
     glUniform1i(octree, octreeUnit);
     glUniform1f(radiusScale, frame.radiusScale);
     glUniform1f(blendFactor, frame.blendFactor);
@@ -144,8 +138,6 @@ void PointProgram::setNode(const RasterNode& node) const {
         glUniform3uiv(highY, 1, node.highY.data());
         glUniform2ui(origin, node.originX, node.originY);
     }
-    glUniform1i(colourSource, static_cast<GLint>(node.source));
-    glUniform2f(ramp, node.rampScale, node.rampOffset);
     glUniform2f(rank, node.rankBase, node.rankStep);
     glUniform1f(nodeSize64, node.nodeSize64);
 }

@@ -26,16 +26,16 @@ struct PointVariant {
 };
 
 // Texture units of the point programs.
-inline constexpr int gradientUnit = 0, octreeUnit = 1, nearestUnit = 2, centreColoursUnit = 3,
-                     centreDepthsUnit = 4, centrePlacesUnit = 5;
+inline constexpr int octreeUnit = 1, nearestUnit = 2, centreColoursUnit = 3, centreDepthsUnit = 4,
+                     centrePlacesUnit = 5;
 
 // points.vert.glsl + points.frag.glsl with one set of defines, and where its uniforms are.
 struct PointProgram {
     Program program;
-    GLint cell, fraction, rowX, rowY, rowD, positionShift, colourSource, ramp;
+    GLint cell, fraction, rowX, rowY, rowD, positionShift;
     GLint deep, fractionBits, lowX, highX, lowY, highY, origin;
     GLint centre, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
-        sizeRange64, gradient;
+        sizeRange64;
     GLint rank, continuous, growth, falloff, leastDensity, sizeByDensity;
 
     GLint octree, octreePlace, nodeBits, nodeSize64;

@@ -7,7 +7,6 @@
 #include "client/render/gles_picker.hpp"
 #include "client/render/gles_programs.hpp"
 #include "client/render/gles_targets.hpp"
-#include "client/render/gradients.hpp"
 #include "client/render/raster_setup.hpp"
 #include "shared/base/text.hpp"
 
@@ -55,7 +54,6 @@ class Gles3Renderer final : public GlesRenderer {
         resolve_ = std::move(resolve);
         STIPPLE_TRY(resolveSums, ResolveProgram::make(true));
         resolveSums_ = std::move(resolveSums);
-        makeTexture(gradient_, GL_RGBA8, gradientEntries, 1);
         emptyArray_.make();
         return checkGl("preparing to draw");
     }
@@ -114,8 +112,7 @@ class Gles3Renderer final : public GlesRenderer {
     bool pickPending() const override { return picker_.pending(); }
 
     std::uint64_t gpuBytes() const override {
-        return nodes_.bytes() + points_.bytes() + centres_.bytes() + sums_.bytes() + octree_.bytes() +
-               4ull * gradientEntries;
+        return nodes_.bytes() + points_.bytes() + centres_.bytes() + sums_.bytes() + octree_.bytes();
     }
 
     std::string_view limitation() const override { return limitation_; }
@@ -144,16 +141,6 @@ class Gles3Renderer final : public GlesRenderer {
         if (target == 0)
             defaultIsDirect_ = direct;
         return direct;
-    }
-
-    void loadGradient(GradientName name) {
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, gradient_.id());
-        if (loadedGradient_ == name)
-            return;
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, gradientEntries, 1, GL_RGBA, GL_UNSIGNED_BYTE,
-                        gradientTable(name).data());
-        loadedGradient_ = name;
     }
 
     // The nearest points, in their sizes, into `target`.
@@ -250,11 +237,9 @@ class Gles3Renderer final : public GlesRenderer {
             octree_.load(plan);
         else
             octree_.clear();
-        loadGradient(plan.style.gradient);
         glVertexAttrib4f(colourLocation, (plainColourWord & 255) * levelsInv,
                          (plainColourWord >> 8 & 255) * levelsInv, (plainColourWord >> 16 & 255) * levelsInv,
                          1);
-        glVertexAttrib1f(intensityLocation, 0);
 
         const PointProgram* inUse = nullptr;
         for (std::size_t place = 0; place < order.size(); ++place) {
@@ -271,7 +256,7 @@ class Gles3Renderer final : public GlesRenderer {
                 program->useFor(frame);
             inUse = program;
             RasterNode raster = rasterNode(plan, node);
-            nodes_.bind(*node.node, how.identities ? ColourSource::plain : raster.source);
+            nodes_.bind(node);
             program->setNode(raster);
             if (how.identities)
                 program->setIdentity(static_cast<std::uint32_t>(place), how.identities->left,
@@ -302,8 +287,6 @@ class Gles3Renderer final : public GlesRenderer {
     PointPrograms pointPrograms_;
     OctreeTexture octree_;
     ResolveProgram resolve_, resolveSums_;
-    Texture gradient_;
-    std::optional<GradientName> loadedGradient_;
     VertexArray emptyArray_;
     PointTarget points_;
     CentreTarget centres_; // delayed expansion

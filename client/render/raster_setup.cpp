@@ -1,7 +1,6 @@
 #include "client/render/raster_setup.hpp"
 
 #include "client/core/continuous_detail.hpp"
-#include "client/render/gradients.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -52,18 +51,6 @@ void setDetail(const FramePlan& plan, RasterFrame& frame) {
 
 int depthShiftOf(std::uint32_t nearBits, std::uint32_t farBits) {
     return std::max(0, static_cast<int>(std::bit_width(farBits - nearBits)) - depthBits);
-}
-
-ColourSource sourceOf(ColourMode mode, const ResidentNode& node) {
-    switch (mode) {
-    case ColourMode::rgb:
-        return node.colourWords.empty() ? ColourSource::plain : ColourSource::words;
-    case ColourMode::intensity:
-        return node.intensity.empty() ? ColourSource::plain : ColourSource::intensity;
-    case ColourMode::elevation:
-        return ColourSource::elevation;
-    }
-    return ColourSource::plain;
 }
 
 // How far from the camera a point of the node can lie, in pixels, summed over the axes.
@@ -172,7 +159,6 @@ RasterFrame singlePixelFrame(const RasterFrame& frame) {
 }
 
 RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
-    const Style& style = plan.style;
     RasterNode raster;
     Focal focal = focalOf(plan);
     for (int axis = 0; axis < 3; ++axis) {
@@ -190,18 +176,7 @@ RasterNode rasterNode(const FramePlan& plan, const DrawNode& node) {
         raster.rankBase = static_cast<float>(node.density.base * target * target);
         raster.rankStep = static_cast<float>(node.density.step * target * target);
     }
-
-    raster.nodeSize64 = static_cast<float>(node.spacing * style.sizeSpacings * focal.y * sizeSteps);
-
-    raster.source = sourceOf(style.colourMode, *node.node);
-    Range range = raster.source == ColourSource::elevation ? style.elevationRange : style.intensityRange;
-    double width = range.max > range.min ? range.max - range.min : 1.0;
-    double entries = gradientEntries - 1;
-    bool elevation = raster.source == ColourSource::elevation;
-    double step = elevation ? node.scale.z : 1.0;
-    double base = elevation ? node.cameraZ : 0.0;
-    raster.rampScale = static_cast<float>(step / width * entries);
-    raster.rampOffset = static_cast<float>((base - range.min) / width * entries + 0.5);
+    raster.nodeSize64 = static_cast<float>(node.spacing * plan.style.sizeSpacings * focal.y * sizeSteps);
     return raster;
 }
 

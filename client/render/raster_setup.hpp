@@ -30,6 +30,7 @@
 //            (drawn_octree.hpp): size64 = clamp(nodeSize64 · 2^-k / d + 0.5)     orthographic: without "/ d"
 // Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
 //            point is covered always, so that no point vanishes between pixel centres.
+// Colour     DrawNode::colourWords(); points whose word has no alpha are hidden (DrawNode::shows).
 // Depth      step q = (bits(d) - bits(near)) >> depthShift, where bits() reads the float as an integer: a
 //            piecewise linear logarithm, monotone, without rounding, under 2^24. The depth buffer holds
 //            q / 2^24. The nearer step wins; among equal steps the point that comes first in drawOrder().
@@ -82,10 +83,6 @@ inline float floatOfBits(std::uint32_t bits) {
     return value;
 }
 
-// Where a point's colour comes from. `plain`: the node has no values of the wanted kind.
-enum class ColourSource : std::uint8_t { words = 0, intensity = 1, elevation = 2, plain = 3 };
-inline constexpr std::uint32_t plainColourWord = 0xFFB4B4B4; // R | G << 8 | B << 16 | 255 << 24
-
 struct RasterFrame {
     int width = 0, height = 0;
     bool perspective = true;
@@ -122,10 +119,6 @@ struct RasterNode {
     std::uint32_t originX = 0, originY = 0;
     float rankBase = 0, rankStep = 0; // see "Detail"
     float nodeSize64 = 0;             // see "Adaptive"; 1/64 pixel, at distance 1 in perspective
-    ColourSource source = ColourSource::words;
-    // Entry of the gradient: floor(clamp(value × rampScale + rampOffset)); the value is the intensity, or
-    // r.z for elevation.
-    float rampScale = 0, rampOffset = 0;
 };
 
 // The view distance at which a depth step begins.

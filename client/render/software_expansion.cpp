@@ -110,15 +110,15 @@ void expandRows(const RasterFrame& frame, const Centres& centres, RowRange rows,
                  });
 }
 
-void blendExpandedRows(const RasterFrame& frame, const Centres& centres, const GradientTable& gradient,
-                       RowRange rows, const std::uint64_t* nearest, PixelSums* sums) {
+void blendExpandedRows(const RasterFrame& frame, const Centres& centres, RowRange rows,
+                       const std::uint64_t* nearest, PixelSums* sums) {
     std::array<std::uint32_t, blockPoints> colours;
     Sizing sizing = sizingOf(frame) == Sizing::single ? Sizing::fixed : sizingOf(frame);
     visitCentres(frame, centres, rows, sizing,
                  [&](const PlacedNode& placed, const Block& block, std::size_t count, const std::uint32_t*,
                      const std::uint32_t* ranks) {
                      for (std::size_t i = 0; i < count; ++i)
-                         colours[i] = colourOf(gradient, placed, ranks[i]);
+                         colours[i] = colourOf(*placed.draw, ranks[i]);
                      blendBlock(frame, block, count, colours.data(), nearest, sums);
                  });
 }

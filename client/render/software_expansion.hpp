@@ -25,8 +25,8 @@ struct RowRange {
 void expandRows(const RasterFrame& frame, const Centres& centres, RowRange rows, std::uint64_t* cells,
                 bool shared);
 // Blends them, as blendRun() does; `nearest` is what expandRows() drew.
-void blendExpandedRows(const RasterFrame& frame, const Centres& centres, const GradientTable& gradient,
-                       RowRange rows, const std::uint64_t* nearest, PixelSums* sums);
+void blendExpandedRows(const RasterFrame& frame, const Centres& centres, RowRange rows,
+                       const std::uint64_t* nearest, PixelSums* sums);
 
 // Puts the points' own indices into row `y` of `cells`.
 void nameExpandedRow(const RasterFrame& frame, const Centres& centres, int y, std::uint64_t* cells);

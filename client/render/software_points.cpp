@@ -1,6 +1,7 @@
 #include "client/render/software_points.hpp"
 
 #include "client/render/software_coverage.hpp"
+#include "client/render/software_hiding.hpp"
 #include "client/render/software_transform.hpp"
 
 #include <algorithm>
@@ -164,6 +165,10 @@ void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, 
     if (sizing == Sizing::adaptive)
         fillFineness(run.octree, run.place, *run.node, words, count, block);
     transformFor(frame, *run.raster, sizing)(frame, *run.raster, words, count, block);
+    if (run.hiding)
+        hidePoints(run.hiding + run.first + done, count,
+                   static_cast<std::uint32_t>(frame.width) * static_cast<std::uint32_t>(frame.height), sizing,
+                   block);
 }
 
 void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells, bool shared) {

@@ -28,6 +28,7 @@ struct PointRun {
     const std::uint32_t* octree =
         nullptr; // drawn_octree.hpp, and the node's place in it: adaptive sizes only
     std::uint32_t place = 0;
+    const std::uint32_t* hiding = nullptr; // colour words of the node's points, if some are hidden
 };
 
 // Where points `done` to `done` + `count` of a run lie; count <= blockPoints.

@@ -37,7 +37,7 @@ class CellRenderer final : public SoftwareRenderer {
         else
             drawWhole(frame, cells_);
         if (frame.splats)
-            blend(plan, frame, late);
+            blend(frame, late);
         if (late)
             byRows([&](int y) { nameExpandedRow(frame, centres(), y, cells_.data()); });
         colour(plan, frame, edl);
@@ -138,6 +138,10 @@ class CellRenderer final : public SoftwareRenderer {
         }
     }
 
+    static const std::uint32_t* hidingWords(const DrawNode& node) {
+        return node.paint && node.paint->hidden > 0 ? node.paint->words->data() : nullptr;
+    }
+
     void clearRows(std::vector<std::uint64_t>& cells, int first, int end) {
         byRows([&](int y) {
             auto width = static_cast<std::size_t>(image_.width);
@@ -155,7 +159,8 @@ class CellRenderer final : public SoftwareRenderer {
                 runNodes_.push_back(&placed);
                 runs_.push_back({placed.draw->node.get(), &placed.raster, first,
                                  std::min(runPoints, placed.draw->pointCount - first),
-                                 placed.firstIndex + first, octree_.words.data(), placed.octreePlace});
+                                 placed.firstIndex + first, octree_.words.data(), placed.octreePlace,
+                                 hidingWords(*placed.draw)});
             }
     }
 
@@ -183,20 +188,19 @@ class CellRenderer final : public SoftwareRenderer {
     }
 
     // Each thread adds to sums of its own.
-    void blend(const FramePlan& plan, const RasterFrame& frame, bool late) {
+    void blend(const RasterFrame& frame, bool late) {
         std::size_t pixels = image_.rgba.size() / 4;
         sums_.resize(static_cast<std::size_t>(std::min(workers_.threads(), maxBlendingThreads)));
         std::atomic<std::size_t> next{0};
         std::size_t pieces = late ? rowPieces() : runs_.size();
-        const GradientTable& gradient = gradientTable(plan.style.gradient);
         workers_.run(sums_.size(), [&](std::size_t thread) {
             std::vector<PixelSums>& sums = sums_[thread];
             sums.assign(pixels, {});
             for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)
                 if (late)
-                    blendExpandedRows(frame, centres(), gradient, rowsOf(i), cells_.data(), sums.data());
+                    blendExpandedRows(frame, centres(), rowsOf(i), cells_.data(), sums.data());
                 else
-                    blendRun(frame, *runNodes_[i], gradient, runs_[i], cells_.data(), sums.data());
+                    blendRun(frame, *runNodes_[i], runs_[i], cells_.data(), sums.data());
         });
     }
 

@@ -1,47 +1,15 @@
 #include "client/render/software_shading.hpp"
 
-#include "client/render/gradients.hpp"
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
 
 namespace stipple {
-namespace {
 
-// r.z of raster_setup.hpp: height above the camera in grid steps.
-float heightOf(const RasterNode& raster, const ResidentNode& node, std::size_t point) {
-    std::uint32_t z = node.positionWords[2 * point + 1] >> 11;
-    if (raster.positionShift > 0) {
-        std::uint32_t low = node.positionLowWords[point] >> 20;
-        z = (z << raster.positionShift) | (low & ((1u << raster.positionShift) - 1));
-    }
-    auto relative = static_cast<std::int32_t>(z - static_cast<std::uint32_t>(raster.cell[2]));
-    return static_cast<float>(relative) - raster.fraction[2];
-}
-
-std::uint32_t gradientAt(const GradientTable& table, const RasterNode& raster, float value) {
-    float entry = std::clamp(value * raster.rampScale + raster.rampOffset, 0.0f,
-                             static_cast<float>(gradientEntries - 1));
-    return table[static_cast<std::size_t>(entry)];
-}
-
-} // namespace
-
-std::uint32_t colourOf(const GradientTable& table, const PlacedNode& placed, std::size_t point) {
-    const ResidentNode& node = *placed.draw->node;
-    switch (placed.raster.source) {
-    case ColourSource::words:
-        return node.colourWords[point] | 0xFF000000u;
-    case ColourSource::intensity:
-        return gradientAt(table, placed.raster, node.intensity[point]);
-    case ColourSource::elevation:
-        return gradientAt(table, placed.raster, heightOf(placed.raster, node, point));
-    case ColourSource::plain:
-        break;
-    }
-    return plainColourWord;
+std::uint32_t colourOf(const DrawNode& node, std::size_t point) {
+    const std::vector<std::uint32_t>& words = node.colourWords();
+    return words.empty() ? plainColourWord : words[point] | 0xFF000000u;
 }
 
 namespace {
@@ -82,7 +50,6 @@ void InverseDistances::resize(int width, int height, const EdlSetup& edl) {
 
 void colourRow(const FramePlan& plan, const RasterFrame& frame, const std::vector<PlacedNode>& nodes,
                const std::uint64_t* cells, int y, Image& image, InverseDistances* distances) {
-    const GradientTable& table = gradientTable(plan.style.gradient);
     const auto& b = plan.style.background;
     const std::uint32_t background =
         b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | 0xFF000000u;
@@ -103,7 +70,7 @@ void colourRow(const FramePlan& plan, const RasterFrame& frame, const std::vecto
                 placed = &*(next - 1);
                 place = index - placed->firstIndex;
             }
-            word = colourOf(table, *placed, static_cast<std::size_t>(place));
+            word = colourOf(*placed->draw, static_cast<std::size_t>(place));
             if (inverse) {
                 auto step = static_cast<std::uint32_t>(line[x] >> indexBits);
                 inverse[x] = 1.0f / distanceOfStep(frame, step);

@@ -2,7 +2,6 @@
 // lighting.
 #pragma once
 
-#include "client/render/gradients.hpp"
 #include "client/render/image.hpp"
 #include "client/render/raster_setup.hpp"
 #include "client/render/software_points.hpp"
@@ -20,8 +19,8 @@ struct PlacedNode {
     std::uint32_t octreePlace = 0; // DrawnOctree::places, with adaptive sizes
 };
 
-// Of point `point` of a node: R | G << 8 | B << 16 | 255 << 24. `table`: of the style's gradient.
-std::uint32_t colourOf(const GradientTable& table, const PlacedNode& placed, std::size_t point);
+// Of point `point` of a node: R | G << 8 | B << 16 | 255 << 24.
+std::uint32_t colourOf(const DrawNode& node, std::size_t point);
 
 // 1 / view distance per pixel and 0 where there is no point, with a margin of zeros around the picture as
 // wide as the neighbours of eye-dome lighting reach.

@@ -41,8 +41,8 @@ void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count,
     }
 }
 
-void blendRun(const RasterFrame& frame, const PlacedNode& placed, const GradientTable& gradient,
-              const PointRun& run, const std::uint64_t* cells, PixelSums* sums) {
+void blendRun(const RasterFrame& frame, const PlacedNode& placed, const PointRun& run,
+              const std::uint64_t* cells, PixelSums* sums) {
     Block block;
     std::array<std::uint32_t, blockPoints> colours;
     Sizing sizing = sizingOf(frame) == Sizing::single ? Sizing::fixed : sizingOf(frame);
@@ -50,7 +50,7 @@ void blendRun(const RasterFrame& frame, const PlacedNode& placed, const Gradient
         std::size_t count = std::min<std::size_t>(blockPoints, run.count - done);
         fillBlock(frame, run, done, count, sizing, block);
         for (std::size_t i = 0; i < count; ++i)
-            colours[i] = colourOf(gradient, placed, run.first + done + i);
+            colours[i] = colourOf(*placed.draw, run.first + done + i);
         blendBlock(frame, block, count, colours.data(), cells, sums);
     }
 }

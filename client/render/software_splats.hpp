@@ -17,8 +17,8 @@ struct alignas(32) PixelSums {
 
 // Adds a run of `placed` to `sums` (one per pixel) where it lies within its blend depth of what `cells` hold,
 // the nearest points. One thread per array of sums.
-void blendRun(const RasterFrame& frame, const PlacedNode& placed, const GradientTable& gradient,
-              const PointRun& run, const std::uint64_t* cells, PixelSums* sums);
+void blendRun(const RasterFrame& frame, const PlacedNode& placed, const PointRun& run,
+              const std::uint64_t* cells, PixelSums* sums);
 
 // The same of a block of points in these colours. No size may be `single`.
 void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,

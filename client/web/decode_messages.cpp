@@ -9,7 +9,10 @@ namespace {
 constexpr std::uint32_t jobMark = 0x314A4253;    // "SBJ1"
 constexpr std::uint32_t answerMark = 0x31414253; // "SBA1"
 constexpr std::uint32_t maxTextBytes = 1 << 16;
-constexpr std::uint32_t maxPoints = 1u << 28; // three words and a float each still fit the address space
+constexpr std::uint32_t maxPoints = 1u << 28; // four words each still fit the address space
+constexpr std::uint64_t maxColumnBytes = 1ull << 31;
+constexpr int wordArrayCount = nodeArrayCount - 1; // and the columns' values
+static_assert(sizeof(NodeColumn) == 8);
 
 Error damaged(const char* what) {
     return {ErrorCode::corrupt, what, "decoding worker", "reload the page"};
@@ -42,6 +45,27 @@ std::string readText(ByteReader& in) {
     return {reinterpret_cast<const char*>(part.data()), part.size()};
 }
 
+// With the values' size, to be filled.
+Result<NodeColumns> readColumns(ByteReader& in, std::uint32_t points) {
+    NodeColumns columns;
+    std::uint32_t count = in.read<std::uint32_t>();
+    std::uint64_t bytesPerPoint = 0;
+    if (count > in.remaining() / sizeof(NodeColumn) || points > maxPoints)
+        return damaged("an answer to a decoding job names more columns than it holds");
+    for (std::uint32_t i = 0; i < count; ++i) {
+        NodeColumn column;
+        column.attribute = in.read<std::int32_t>();
+        column.bytesPerPoint = in.read<std::uint32_t>();
+        bytesPerPoint += column.bytesPerPoint;
+        columns.columns.push_back(column);
+    }
+    if (bytesPerPoint > 0 && points > maxColumnBytes / bytesPerPoint)
+        return damaged("the attributes of a decoded node have the wrong length");
+    columns.pointCount = count > 0 ? points : 0;
+    columns.values.resize(static_cast<std::size_t>(points * bytesPerPoint));
+    return columns;
+}
+
 template <class T>
 ByteSpan bytesOf(const std::vector<T>& values) {
     return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
@@ -63,7 +87,7 @@ Bytes encodeJob(const DecodeJob& job) {
     for (std::uint32_t size : job.entry.attributeBytes)
         out.write(size);
     out.write(static_cast<std::int32_t>(job.strata));
-    out.write(static_cast<std::uint8_t>(job.wantsIntensity));
+    out.write(job.block);
     return out.take();
 }
 
@@ -86,7 +110,7 @@ Result<DecodeJob> decodeJob(ByteSpan message) {
     for (std::uint32_t& size : job.entry.attributeBytes)
         size = in.read<std::uint32_t>();
     job.strata = in.read<std::int32_t>();
-    job.wantsIntensity = in.read<std::uint8_t>() != 0;
+    job.block = in.read<std::int32_t>();
     if (!in.ok() || in.remaining() != 0 || job.strata < 0 || job.strata > strataCount)
         return damaged("a decoding job has the wrong length");
     return job;
@@ -101,7 +125,7 @@ ByteSpan nodeArray(const ResidentNode& node, int index) {
     case 2:
         return bytesOf(node.colourWords);
     case 3:
-        return bytesOf(node.intensity);
+        return node.columns.values;
     default:
         return {};
     }
@@ -128,8 +152,14 @@ Bytes encodeAnswer(const Result<ResidentNode>& answer) {
     out.write(static_cast<std::int32_t>(node.positionShift));
     out.write(node.pointCount);
     out.write(node.totalPoints);
-    for (int i = 0; i < nodeArrayCount; ++i)
+    out.write(node.shownUnit);
+    for (int i = 0; i < wordArrayCount; ++i)
         out.write(static_cast<std::uint32_t>(nodeArray(node, i).size() / 4));
+    out.write(static_cast<std::uint32_t>(node.columns.columns.size()));
+    for (const NodeColumn& column : node.columns.columns) {
+        out.write(column.attribute);
+        out.write(column.bytesPerPoint);
+    }
     return out.take();
 }
 
@@ -151,21 +181,23 @@ Result<ResidentNode> decodeAnswer(ByteSpan message) {
     node.positionShift = in.read<std::int32_t>();
     node.pointCount = in.read<std::uint32_t>();
     node.totalPoints = in.read<std::uint32_t>();
-    std::array<std::uint32_t, nodeArrayCount> counts{};
+    node.shownUnit = in.read<std::uint32_t>();
+    std::array<std::uint32_t, wordArrayCount> counts{};
     for (std::uint32_t& count : counts)
         count = in.read<std::uint32_t>();
+    STIPPLE_TRY(columns, readColumns(in, node.pointCount));
     if (!in.ok() || in.remaining() != 0 || node.pointCount > maxPoints)
         return damaged("an answer to a decoding job has the wrong length");
-    // An array is whole or absent: a job for intensities alone has no positions.
-    const std::array<std::uint32_t, nodeArrayCount> whole{2 * node.pointCount, node.pointCount,
-                                                          node.pointCount, node.pointCount};
+    // An array is whole or absent: a job for attributes alone has no positions.
+    const std::array<std::uint32_t, wordArrayCount> whole{2 * node.pointCount, node.pointCount,
+                                                          node.pointCount};
     for (std::size_t i = 0; i < counts.size(); ++i)
         if (counts[i] != 0 && counts[i] != whole[i])
             return damaged("an array of a decoded node has the wrong length");
     node.positionWords.resize(counts[0]);
     node.positionLowWords.resize(counts[1]);
     node.colourWords.resize(counts[2]);
-    node.intensity.resize(counts[3]);
+    node.columns = std::move(columns);
     return node;
 }
 

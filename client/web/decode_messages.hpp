@@ -8,7 +8,8 @@
 
 namespace stipple::web {
 
-// Everything of a job but its metadata (workers keep that per cloud) and its bytes (sent beside it).
+// Everything of a job but its metadata (workers keep that per cloud) and its bytes, which are sent beside it:
+// first the picture, or what an exact colour is coded against; second the block of attributes.
 Bytes encodeJob(const DecodeJob& job);
 Result<DecodeJob> decodeJob(ByteSpan message);
 

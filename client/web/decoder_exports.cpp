@@ -16,15 +16,15 @@ std::map<std::uint32_t, Result<SharedMetadata>> clouds;
 Bytes answerMessage;
 ResidentNode answerNode;
 
-Result<ResidentNode> decode(ByteSpan message, ByteSpan picture, ByteSpan intensity) {
+Result<ResidentNode> decode(ByteSpan message, ByteSpan first, ByteSpan second) {
     STIPPLE_TRY(job, web::decodeJob(message));
     auto cloud = clouds.find(job.cloud);
     if (cloud == clouds.end())
         return Error{ErrorCode::cancelled, "the cloud was closed", "decoding worker", ""};
     STIPPLE_TRY(metadata, cloud->second);
     job.metadata = metadata;
-    job.picture.assign(picture.begin(), picture.end());
-    job.intensity.assign(intensity.begin(), intensity.end());
+    (job.strata > 0 ? job.picture : job.shown).assign(first.begin(), first.end());
+    job.attributes.assign(second.begin(), second.end());
     return decodeNode(job);
 }
 
@@ -44,12 +44,12 @@ EMSCRIPTEN_KEEPALIVE void stipple_forget_cloud(std::uint32_t cloud) {
     clouds.erase(cloud);
 }
 
-// Decodes; returns the size of the answer's message (client/web/decode_messages.hpp).
+// Decodes the job of `message`, whose bytes come beside it (decode_messages.hpp); returns the size of the
+// answer's message (client/web/decode_messages.hpp).
 EMSCRIPTEN_KEEPALIVE std::size_t stipple_decode(const std::uint8_t* message, std::size_t messageSize,
-                                                const std::uint8_t* picture, std::size_t pictureSize,
-                                                const std::uint8_t* intensity, std::size_t intensitySize) {
-    Result<ResidentNode> node =
-        decode({message, messageSize}, {picture, pictureSize}, {intensity, intensitySize});
+                                                const std::uint8_t* first, std::size_t firstSize,
+                                                const std::uint8_t* second, std::size_t secondSize) {
+    Result<ResidentNode> node = decode({message, messageSize}, {first, firstSize}, {second, secondSize});
     answerMessage = web::encodeAnswer(node);
     answerNode = node.ok() ? std::move(*node) : ResidentNode{};
     return answerMessage.size();

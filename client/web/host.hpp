@@ -21,8 +21,8 @@ void stippleHostDescribeCloud(std::uint32_t cloud, const std::uint8_t* metadata,
 void stippleHostForgetCloud(std::uint32_t cloud);
 // Has a worker decode a job; the bytes are copied before this returns. Answered by stipple_decode_answer.
 void stippleHostDecode(std::uint32_t job, const std::uint8_t* message, std::size_t messageSize,
-                       const std::uint8_t* picture, std::size_t pictureSize, const std::uint8_t* intensity,
-                       std::size_t intensitySize);
+                       const std::uint8_t* picture, std::size_t pictureSize, const std::uint8_t* attributes,
+                       std::size_t attributesSize);
 
 // Something arrived: a frame should be asked for.
 void stippleHostWake();

@@ -26,9 +26,9 @@ mergeInto(LibraryManager.library, {
         Module['host'].forgetCloud(cloud);
     },
     stippleHostDecode__deps: ['$stippleBytes'],
-    stippleHostDecode: function (job, message, messageSize, picture, pictureSize, intensity, intensitySize) {
+    stippleHostDecode: function (job, message, messageSize, picture, pictureSize, attributes, attributesSize) {
         Module['host'].decode(job, stippleBytes(message, messageSize), stippleBytes(picture, pictureSize),
-            stippleBytes(intensity, intensitySize));
+            stippleBytes(attributes, attributesSize));
     },
 
     stippleHostWake: function () {

@@ -11,8 +11,9 @@ void WorkerDecoder::decode(DecodeJob job, Completion done) {
     std::uint32_t id = ++lastJob_;
     waiting_.emplace(id, Waiting{std::move(done), {}});
     Bytes message = encodeJob(job);
-    stippleHostDecode(id, message.data(), message.size(), job.picture.data(), job.picture.size(),
-                      job.intensity.data(), job.intensity.size());
+    const Bytes& first = job.strata > 0 ? job.picture : job.shown;
+    stippleHostDecode(id, message.data(), message.size(), first.data(), first.size(), job.attributes.data(),
+                      job.attributes.size());
 }
 
 int WorkerDecoder::pump(std::chrono::milliseconds) {

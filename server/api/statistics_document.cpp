@@ -1,6 +1,6 @@
 #include "server/api/statistics_document.hpp"
 
-#include "server/api/class_names.hpp"
+#include "shared/points/point_classes.hpp"
 
 #include <algorithm>
 #include <cmath>

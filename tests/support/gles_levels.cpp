@@ -54,7 +54,7 @@ Result<std::vector<std::vector<int>>> glesLevels(const FramePlan& plan, unsigned
         STIPPLE_TRY(program, programs.get(variant));
         program->useFor(frame);
         RasterNode raster = rasterNode(plan, node);
-        buffers.bind(*node.node, raster.source);
+        buffers.bind(node);
         program->setNode(raster);
         program->setOctreePlace(octree.placeOf(i), *node.node);
         Capture capture(node.pointCount);

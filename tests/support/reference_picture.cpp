@@ -18,8 +18,8 @@ struct NodeCloud {
             for (std::string_view name :
                  {attribute_names::red, attribute_names::green, attribute_names::blue})
                 add(name, AttributeType::u16);
-        if (node.hasIntensity)
-            add(attribute_names::intensity, AttributeType::f32);
+        for (const Attribute& attribute : attributesOf(node))
+            points.attributes.push_back(attribute);
         batch.resize({points.attributes}, node.points.size());
         for (std::size_t i = 0; i < node.points.size(); ++i) {
             const TestPoint& p = node.points[i];
@@ -28,12 +28,17 @@ struct NodeCloud {
             if (node.hasColour)
                 for (std::uint8_t level : {p.r, p.g, p.b})
                     batch.setValue<std::uint16_t>(column++, i, level);
-            if (node.hasIntensity)
-                batch.setValue<float>(column, i, p.intensity);
+            if (node.hasIntensity) {
+                batch.setValue<float>(column++, i, p.intensity);
+                batch.setValue<std::uint8_t>(column++, i, p.classification);
+                batch.setValue<double>(column++, i, p.gpsTime);
+            }
         }
         points.grid = &grid;
         points.batch = &batch;
         points.colourIs8Bit = true;
+        points.level = node.key.level > 0 ? node.key.level : 8; // as testPlan has it
+        points.nodePoints = static_cast<double>(node.points.size());
     }
     NodeCloud(const NodeCloud&) = delete;
 

@@ -2,8 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace stipple::test {
+
+std::vector<Attribute> attributesOf(const TestNode& node) {
+    if (!node.hasIntensity)
+        return {};
+    return {{std::string(attribute_names::intensity), AttributeType::f32},
+            {std::string(attribute_names::classification), AttributeType::u8},
+            {std::string(attribute_names::gpsTime), AttributeType::f64}};
+}
+
+namespace {
+
+NodeColumns columnsOf(const TestNode& node) {
+    ByteWriter values;
+    for (const TestPoint& p : node.points)
+        values.write(p.intensity);
+    for (const TestPoint& p : node.points)
+        values.write(p.classification);
+    for (const TestPoint& p : node.points)
+        values.write(p.gpsTime);
+    return {static_cast<std::uint32_t>(node.points.size()), {{0, 4}, {1, 1}, {2, 8}}, values.take()};
+}
+
+} // namespace
 
 std::shared_ptr<const ResidentNode> residentNode(const TestNode& node) {
     static std::uint64_t nextId = 1;
@@ -24,9 +48,9 @@ std::shared_ptr<const ResidentNode> residentNode(const TestNode& node) {
         if (node.hasColour)
             resident->colourWords.push_back(p.r | std::uint32_t{p.g} << 8 | std::uint32_t{p.b} << 16 |
                                             0xFF000000u);
-        if (node.hasIntensity)
-            resident->intensity.push_back(p.intensity);
     }
+    if (node.hasIntensity)
+        resident->columns = columnsOf(node);
     return resident;
 }
 
@@ -69,11 +93,28 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
             draw.cameraFraction[i] = fraction;
             draw.cameraOffset[i] = steps - cell;
         }
-        draw.cameraZ = view.position.z;
         draw.node = std::move(resident);
         plan.nodes.push_back(std::move(draw));
     }
+    paintPlan(plan, nodes);
     return plan;
+}
+
+void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes) {
+    Result<ClipBoxes> clips = ClipBoxes::make(plan.style.clipBoxes);
+    if (!clips.ok())
+        std::abort(); // the test's boxes are wrong
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        Schema schema{attributesOf(nodes[n])};
+        Grid grid{nodes[n].scale, nodes[n].corner};
+        std::int64_t side = std::int64_t{1} << nodes[n].nodeBits;
+        BoxD box;
+        box.extend(nodes[n].corner);
+        box.extend(grid.toWorld({side, side, side}));
+        Painter painter(plan.style, *clips, schema, grid, true,
+                        plan.style.detail.mode == DetailMode::continuous);
+        plan.nodes[n].paint = painter.paint({plan.nodes[n].node, {}, {0, 0, 0}, box});
+    }
 }
 
 std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t pointsPerNode, int rootBits,
@@ -144,6 +185,8 @@ TestNode randomNode(std::uint64_t seed, std::uint32_t count, int nodeBits, Vec3d
         p.g = level();
         p.b = level();
         p.intensity = static_cast<float>(random.below(4096));
+        p.classification = static_cast<std::uint8_t>(7 * i % 23);
+        p.gpsTime = 390583952.3 + 1e-4 * static_cast<double>(311 * i % 1000);
         node.points.push_back(p);
     }
     return node;

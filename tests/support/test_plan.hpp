@@ -13,6 +13,8 @@ struct TestPoint {
     std::uint32_t x = 0, y = 0, z = 0; // grid steps inside the node
     std::uint8_t r = 255, g = 255, b = 255;
     float intensity = 0;
+    std::uint8_t classification = 0;
+    double gpsTime = 0;
 };
 
 // A cube of 2^nodeBits grid steps of `scale` world units whose lowest corner is at `corner` (world).
@@ -21,7 +23,7 @@ struct TestNode {
     int nodeBits = 16;
     Vec3d corner{0, 0, 0};
     Vec3d scale{0.01, 0.01, 0.01};
-    bool hasColour = true, hasIntensity = true;
+    bool hasColour = true, hasIntensity = true; // without: no further attributes either
     NodeKey key;        // level 0: testPlan gives each node a key of its own, at level 8
     double spacing = 0; // of its points, world units
 
@@ -39,6 +41,11 @@ struct TestView {
 
 std::shared_ptr<const ResidentNode> residentNode(const TestNode& node);
 FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style = {});
+// Paints a plan of these nodes anew, after its style was changed.
+void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes);
+
+// What a node's points carry: Intensity (float32), Classification, GPS Time; or nothing.
+std::vector<Attribute> attributesOf(const TestNode& node);
 
 // The nodes of an octree of `depth` levels below its root, some branches of which end sooner. Each holds
 // `pointsPerNode` random points; the root is 2^rootBits steps wide. Root spacing: an eighth of its side.
@@ -62,7 +69,8 @@ class TestRandom {
     std::uint64_t state_;
 };
 
-// `count` points anywhere in the node, with random colours and intensities 0..4095.
+// `count` points anywhere in the node, with random colours, intensities 0..4095, classes 0..22 and
+// GPS times of a tenth of a second, which float can't tell apart.
 TestNode randomNode(std::uint64_t seed, std::uint32_t count, int nodeBits, Vec3d corner, double scale);
 
 } // namespace stipple::test

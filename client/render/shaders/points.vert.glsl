@@ -5,14 +5,12 @@
 // tell the level found there; IDENTITY where it is asked which point a pixel shows.
 precision highp float;
 precision highp int;
-precision highp sampler2D;
 
 layout(location = 0) in uvec2 aPosition;
 #ifdef LOW_WORDS
 layout(location = 1) in uint aPositionLow;
 #endif
-layout(location = 2) in vec4 aColour;
-layout(location = 3) in float aIntensity;
+layout(location = 2) in vec4 aColour; // alpha 0: hidden
 
 uniform ivec3 uCell;
 uniform vec3 uFraction;
@@ -27,8 +25,6 @@ uniform uvec3 uHighX;
 uniform uvec3 uLowY;
 uniform uvec3 uHighY;
 uniform uvec2 uOrigin;
-uniform int uColourSource; // ColourSource
-uniform vec2 uRamp;        // scale, offset
 uniform vec2 uRank;        // raster_setup.hpp, "Detail": base, step
 
 uniform bool uSizeByDistance;
@@ -40,7 +36,6 @@ uniform float uGrowth;
 uniform vec2 uFalloff;
 uniform float uLeastDensity;
 uniform bool uSizeByDensity;
-uniform sampler2D uGradient;
 #ifdef ADAPTIVE
 uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
 #endif
@@ -75,19 +70,6 @@ ivec2 deepCell(ivec3 steps, vec2 window) {
     return whole * 128 + (ivec2(exact - (uvec2(whole) << uFractionBits)) >> (uFractionBits - 7));
 }
 
-vec4 gradientAt(float value) {
-    float entry = clamp(value * uRamp.x + uRamp.y, 0.0, float(GRADIENT_ENTRIES - 1));
-    return texelFetch(uGradient, ivec2(int(entry), 0), 0);
-}
-
-vec4 colourOf(vec3 r) {
-    if (uColourSource == 1)
-        return gradientAt(aIntensity);
-    if (uColourSource == 2)
-        return gradientAt(r.z);
-    return aColour;
-}
-
 void main() {
     uvec3 p = uvec3(aPosition.x & 0x1FFFFFu, (aPosition.x >> 21) | ((aPosition.y << 10) & 0x1FF800u),
                     aPosition.y >> 11);
@@ -100,7 +82,7 @@ void main() {
     vec3 r = vec3(steps) - uFraction;
 
     float d = along(uRowD, r);
-    vColour = colourOf(r);
+    vColour = aColour;
 #ifdef IDENTITY
     vPoint = uvec2(0u);
 #endif
@@ -110,7 +92,7 @@ void main() {
     vLevels = levels;
 #endif
 #endif
-    if (!(d >= uNearFar.x && d <= uNearFar.y)) {
+    if (aColour.a == 0.0 || !(d >= uNearFar.x && d <= uNearFar.y)) {
         discardPoint();
         return;
     }

@@ -9,7 +9,7 @@ export type ToDecoder =
           job: number;
           message: Uint8Array<ArrayBuffer>;
           picture: Uint8Array<ArrayBuffer>;
-          intensity: Uint8Array<ArrayBuffer>;
+          attributes: Uint8Array<ArrayBuffer>;
       };
 
 export type FromDecoder =

@@ -34,7 +34,7 @@ export class DecoderPool {
     }
 
     /** The bytes are copied before this returns. */
-    decode(job: number, message: Uint8Array, picture: Uint8Array, intensity: Uint8Array): void {
+    decode(job: number, message: Uint8Array, picture: Uint8Array, attributes: Uint8Array): void {
         const able = this.hands.filter((hand) => hand.stopped === undefined);
         if (able.length === 0) {
             const reason = this.hands[0]!.stopped!;
@@ -43,10 +43,10 @@ export class DecoderPool {
         }
         const hand = able.reduce((least, next) => (next.jobs.size < least.jobs.size ? next : least));
         hand.jobs.add(job);
-        const copies = [message, picture, intensity].map((part) => new Uint8Array(part));
+        const copies = [message, picture, attributes].map((part) => new Uint8Array(part));
         this.send(
             hand,
-            { kind: 'decode', job, message: copies[0]!, picture: copies[1]!, intensity: copies[2]! },
+            { kind: 'decode', job, message: copies[0]!, picture: copies[1]!, attributes: copies[2]! },
             copies.map((copy) => copy.buffer),
         );
     }

@@ -27,8 +27,8 @@ async function start(compiled: WebAssembly.Module): Promise<void> {
 
 function decode(job: number, parts: Uint8Array[], program: DecoderProgram, heap: Heap): void {
     const sizes = parts.map((part) => part.length);
-    const messageSize = heap.lend(parts, (message, picture, intensity) =>
-        program._stipple_decode(message!, sizes[0]!, picture!, sizes[1]!, intensity!, sizes[2]!),
+    const messageSize = heap.lend(parts, (message, picture, attributes) =>
+        program._stipple_decode(message!, sizes[0]!, picture!, sizes[1]!, attributes!, sizes[2]!),
     );
     const message = heap.copy(program._stipple_answer_message(), messageSize);
     const arrays = Array.from({ length: nodeArrayCount }, (_, index) =>
@@ -61,7 +61,7 @@ function handle(message: ToDecoder): void {
             break;
         case 'decode':
             try {
-                decode(message.job, [message.message, message.picture, message.intensity], program, heap);
+                decode(message.job, [message.message, message.picture, message.attributes], program, heap);
             } catch (error) {
                 scope.postMessage({ kind: 'failed', job: message.job, detail: String(error) }, []);
             }

@@ -81,8 +81,8 @@ export class Host {
         this.decoders!.forget(cloud);
     }
 
-    decode(job: number, message: Uint8Array, picture: Uint8Array, intensity: Uint8Array): void {
-        this.decoders!.decode(job, message, picture, intensity);
+    decode(job: number, message: Uint8Array, picture: Uint8Array, attributes: Uint8Array): void {
+        this.decoders!.decode(job, message, picture, attributes);
     }
 
     private async fetchRange(

@@ -76,8 +76,8 @@ export interface DecoderProgram extends Program {
         messageSize: number,
         picture: Address,
         pictureSize: number,
-        intensity: Address,
-        intensitySize: number,
+        attributes: Address,
+        attributesSize: number,
     ): number;
     _stipple_answer_message(): Address;
     _stipple_answer_array(index: number): Address;

@@ -68,7 +68,6 @@ TEST_CASE("the camera's cell stays in the node, and the fraction holds what is o
     CHECK(draw.cameraFraction == std::array<float, 3>{0.25f, -55.5f, 88.75f});
     CHECK(draw.pointCount == 10);
     CHECK(draw.spacing == 1);
-    CHECK(draw.cameraZ == 600.75);
 }
 
 TEST_CASE("even the widest node keeps its camera in 32 bits") {
@@ -98,7 +97,19 @@ TEST_CASE("ranges come from the clouds where the style leaves them open") {
     Style fixed;
     fixed.intensityRange = {1, 2};
     fixed.elevationRange = {-5, 5};
+    fixed.levelRange = {0, 3};
     CHECK(resolvedStyle(fixed, clouds) == fixed);
+
+    Style attribute;
+    attribute.colourMode = ColourMode::attribute;
+    attribute.attribute = "intensity";
+    CHECK(resolvedStyle(attribute, clouds).attributeRange == Range{-100, 100});
+    attribute.colourMode = ColourMode::mix;
+    attribute.mix = {{ColourMode::attribute, "Intensity", {}, 1}, {ColourMode::elevation, "", {3, 4}, 1}};
+    CHECK(resolvedStyle(attribute, clouds).mix[0].range == Range{-100, 100});
+    CHECK(resolvedStyle(attribute, clouds).mix[1].range == Range{3, 4});
+    attribute.mix[0].attribute = "nonsense";
+    CHECK(resolvedStyle(attribute, clouds).mix[0].range == Range{0, 1});
 }
 
 TEST_CASE("a resolved range is never empty") {

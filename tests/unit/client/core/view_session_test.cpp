@@ -263,69 +263,244 @@ TEST_CASE("a hidden cloud is not drawn, and comes back without a request") {
     CHECK(fixture.session->counters().requests == requests);
 }
 
+namespace {
+
+Style coloured(ColourMode mode) {
+    Style style;
+    style.colourMode = mode;
+    return style;
+}
+
+// The painted words of all drawn nodes.
+std::map<NodeKey, std::vector<std::uint32_t>> paintedWords(const FramePlan& plan) {
+    std::map<NodeKey, std::vector<std::uint32_t>> words;
+    for (const DrawNode& node : plan.nodes)
+        words[node.node->key] = node.colourWords();
+    return words;
+}
+
+} // namespace
+
 TEST_CASE("intensity is fetched when the style asks for it, and kept") {
     Fixture fixture(everything());
     auto script = fixture.openAndFit(bigCloud());
     REQUIRE(fixture.settle());
     for (const DrawNode& node : fixture.session->plan().nodes)
-        CHECK(node.node->intensity.empty());
-    Style style;
-    style.colourMode = ColourMode::intensity;
-    fixture.session->setStyle(style);
+        CHECK_FALSE(node.paint);
+    std::uint64_t offered = 0, intensity = 0;
+    for (const NodeEntry& node : bigCloud().nodes) {
+        intensity += node.attributeBytes[0];
+        for (std::uint32_t bytes : node.attributeBytes)
+            offered += bytes;
+    }
+    CHECK(fixture.session->counters().attributeBytesOffered == offered);
+    CHECK(fixture.session->counters().attributeBytesFetched == 0);
+    fixture.session->setStyle(coloured(ColourMode::intensity));
     REQUIRE(fixture.settle());
     CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
     for (const DrawNode& node : fixture.session->plan().nodes) {
-        CHECK(node.node->intensity.size() == node.node->pointCount);
+        REQUIRE(node.paint);
+        CHECK(node.paint->words->size() == node.node->pointCount);
         CHECK(node.node->colourWords.size() == node.node->pointCount);
     }
     const Range& range = fixture.session->plan().style.intensityRange;
     CHECK(range.min == Approx(12768));
     CHECK(range.max == Approx(52768));
     CHECK(bytesAskedTwice(script->reads) == 0);
+    CHECK(fixture.session->counters().attributeBytesFetched == intensity);
 
     std::uint64_t requests = fixture.session->counters().requests;
-    style.colourMode = ColourMode::rgb;
-    fixture.session->setStyle(style);
+    fixture.session->setStyle(coloured(ColourMode::rgb));
     REQUIRE(fixture.settle());
-    style.colourMode = ColourMode::intensity;
-    fixture.session->setStyle(style);
+    fixture.session->setStyle(coloured(ColourMode::intensity));
     REQUIRE(fixture.settle());
     CHECK(fixture.session->counters().requests == requests);
+}
+
+TEST_CASE("attributes that nothing uses are the first to go when room is short") {
+    Fixture fixture(everything());
+    fixture.openAndFit(bigCloud());
+    fixture.session->setStyle(coloured(ColourMode::intensity));
+    REQUIRE(fixture.settle());
+    fixture.session->setStyle(coloured(ColourMode::rgb));
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->counters().columnsDropped == 0);
+    SessionLimits limits = everything();
+    limits.cacheBytes = fixture.session->counters().cacheBytes - 1;
+    fixture.session->setLimits(limits);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->counters().columnsDropped == bigCloud().nodes.size());
+    CHECK(fixture.session->counters().nodesEvicted == 0);
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("a node is painted once as long as nothing about it changes") {
+    Fixture fixture(everything());
+    fixture.openAndFit(smallCloud());
+    Style style = coloured(ColourMode::elevation);
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    std::uint64_t painted = fixture.session->counters().nodesPainted;
+    CHECK(painted >= smallCloud().nodes.size()); // strata of a node come one after the other
+    Camera camera = fixture.session->camera();
+    camera.position = camera.position + Vec3d{0.5, 0, 0};
+    fixture.session->setCamera(camera);
+    style.sizePixels = 5;
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->counters().nodesPainted == painted);
+    style.elevationRange = {0, 1};
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->counters().nodesPainted == painted + smallCloud().nodes.size());
 }
 
 TEST_CASE("intensity from the start belongs to the right points") {
     SmallCloud cloud = makeSmallCloud({.levels = 2, .pointsPerNode = 5000});
     SmallCloud same = makeSmallCloud({.levels = 2, .pointsPerNode = 5000});
-    auto intensities = [](const SmallCloud& of, bool fromTheStart) {
+    auto painted = [](const SmallCloud& of, bool fromTheStart) {
         Fixture fixture(everything());
-        Style style;
-        style.colourMode = ColourMode::intensity;
+        Style style = coloured(ColourMode::intensity);
+        style.gradient = GradientName::grey;
         if (fromTheStart)
             fixture.session->setStyle(style);
         fixture.openAndFit(of);
         REQUIRE(fixture.settle());
         fixture.session->setStyle(style);
         REQUIRE(fixture.settle());
-        std::map<NodeKey, std::vector<float>> values;
-        for (const DrawNode& node : fixture.session->plan().nodes)
-            values[node.node->key] = node.node->intensity;
-        return values;
+        return paintedWords(fixture.session->plan());
     };
-    auto first = intensities(cloud, true);
+    auto first = painted(cloud, true);
     CHECK(first.size() == 5);
-    CHECK(first == intensities(same, false));
+    CHECK(first == painted(same, false));
 }
 
 TEST_CASE("a cloud whose main colour is intensity needs no further block") {
     SmallCloud cloud = makeSmallCloud({.levels = 1, .colour = PictureColour::intensity});
     Fixture fixture(everything());
-    Style style;
-    style.colourMode = ColourMode::intensity;
-    fixture.session->setStyle(style);
+    fixture.session->setStyle(coloured(ColourMode::intensity));
     fixture.openAndFit(cloud);
     REQUIRE(fixture.settle());
     REQUIRE(fixture.session->plan().nodes.size() == 1);
-    CHECK(fixture.session->plan().nodes[0].node->intensity.size() == 400);
+    std::vector<std::uint32_t> words = fixture.session->plan().nodes[0].colourWords();
+    CHECK(words.size() == 400);
+    CHECK(std::set<std::uint32_t>(words.begin(), words.end()).size() > 100);
+    CHECK(fixture.session->counters().attributeBytesFetched == 0);
+}
+
+TEST_CASE("a filter hides points, and a node that is hidden whole is not drawn") {
+    Fixture fixture(everything());
+    fixture.openAndFit(smallCloud());
+    Style style;
+    style.filters = {{"Point Source ID", 0, 30000}};
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    const FramePlan& plan = fixture.session->plan();
+    std::uint64_t points = smallCloud().metadata.pointCount, hidden = 0;
+    for (const DrawNode& node : plan.nodes)
+        for (std::size_t i = 0; i < node.pointCount; ++i)
+            hidden += !node.shows(i);
+    CHECK(hidden == plan.counters.pointsHidden);
+    CHECK(static_cast<double>(hidden) == Approx(static_cast<double>(points) * 35535 / 65536).epsilon(0.05));
+    CHECK(plan.counters.nodesHidden == 0);
+
+    style.filters = {{"Point Source ID", 0.25, 0.75}}; // statistics can't tell, but each node can
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(plan.nodes.empty());
+    CHECK(plan.counters.nodesHidden == smallCloud().nodes.size());
+    CHECK(plan.counters.pointsDrawn == 0);
+}
+
+TEST_CASE("a cloud that statistics say is hidden is neither selected nor fetched") {
+    Fixture fixture(everything());
+    Style style;
+    style.filters = {{"Point Source ID", 70000, 80000}};
+    fixture.session->setStyle(style);
+    fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->plan().nodes.empty());
+    CHECK(fixture.session->plan().counters.nodesHidden > 0);
+    CHECK(fixture.session->counters().nodesDecoded == 0);
+    style.filters.clear();
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("nodes that are clipped away are neither fetched nor drawn") {
+    Fixture whole(everything()), fixture(everything());
+    whole.openAndFit(bigCloud());
+    REQUIRE(whole.settle());
+    BoxD bounds = whole.session->contentBounds();
+    Style style;
+    Vec3d size = bounds.max - bounds.min;
+    // The corner at the minimum: one of the root's four children, and the root.
+    style.clipBoxes = {{bounds.min, size * 0.25}};
+    fixture.session->setStyle(style);
+    fixture.openAndFit(bigCloud());
+    REQUIRE(fixture.settle());
+    const FramePlan& plan = fixture.session->plan();
+    CHECK(plan.counters.nodesClipped > 0);
+    CHECK(plan.nodes.size() < whole.session->plan().nodes.size());
+    CHECK(fixture.session->counters().bytesReceived < whole.session->counters().bytesReceived);
+    std::uint64_t shown = 0;
+    for (const DrawNode& node : plan.nodes)
+        for (std::size_t i = 0; i < node.pointCount; ++i)
+            shown += node.shows(i);
+    CHECK(shown == plan.counters.pointsDrawn - plan.counters.pointsHidden);
+    CHECK(shown > 0);
+
+    style.clipBoxes[0].halfSize = {1e200, 1, 1}; // can't be computed with
+    fixture.session->setStyle(style);
+    CHECK(fixture.session->style().clipBoxes[0].halfSize.x < 1e100);
+}
+
+TEST_CASE("where nothing is coarse exact colours are shown, of coarse nodes the means") {
+    SmallCloud cloud = makeSmallCloud({.levels = 3, .innerColour = InnerColour::mean});
+    MemorySource source(cloud.file);
+    auto reader = CloudReader::open(source);
+    REQUIRE(reader.ok());
+    int red = cloud.metadata.schema.find(attribute_names::red);
+    std::map<NodeKey, std::vector<std::uint8_t>> reds;
+    for (const NodeEntry& entry : cloud.nodes) {
+        auto points = (*reader)->readNode(entry);
+        REQUIRE(points.ok());
+        for (std::size_t i = 0; i < points->size(); ++i)
+            reds[entry.key].push_back(static_cast<std::uint8_t>(points->value<std::uint16_t>(red, i) >> 8));
+    }
+    auto showsExact = [&](const DrawNode& node) {
+        const std::vector<std::uint8_t>& exact = reds[node.node->key];
+        std::size_t wrong = 0;
+        for (std::size_t i = 0; i < node.pointCount; ++i)
+            wrong += static_cast<std::uint8_t>(node.colourWords()[i]) != exact[i];
+        return wrong == 0;
+    };
+
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(cloud);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.pointsDrawn() == cloud.metadata.pointCount);
+    for (const DrawNode& node : fixture.session->plan().nodes)
+        CHECK(showsExact(node));
+    CHECK(fixture.session->plan().counters.nodesExact == 5); // the root and its children
+    CHECK(bytesAskedTwice(script->reads) == 0);
+
+    // One leaf less: its parent and the root show means again.
+    SessionLimits limits = everything();
+    limits.pointBudget = cloud.metadata.pointCount - 1;
+    fixture.session->setLimits(limits);
+    REQUIRE(fixture.settle());
+    CHECK(fixture.session->plan().counters.nodesExact == 3 + 1);
+    for (const DrawNode& node : fixture.session->plan().nodes)
+        if (node.node->key.level == 2)
+            CHECK(showsExact(node));
+
+    limits.pointBudget = cloud.nodes[0].pointCount;
+    fixture.session->setLimits(limits);
+    REQUIRE(fixture.settle());
+    REQUIRE(fixture.session->plan().nodes.size() == 1);
+    CHECK_FALSE(showsExact(fixture.session->plan().nodes[0]));
 }
 
 TEST_CASE("a cloud without intensity is drawn all the same in intensity mode") {

@@ -60,6 +60,8 @@ DepthImage drawnAtOnce(const Job& of) {
         points.batch = &*batch;
         points.attributes = (*reader)->metadata().schema.attributes;
         points.firstOrder = order;
+        points.level = entry.key.level;
+        points.nodePoints = entry.pointCount;
         order += batch->size();
         appendMarks(of.view, of.style, points, marks);
     }

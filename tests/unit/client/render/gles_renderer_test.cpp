@@ -158,21 +158,23 @@ TEST_CASE("a renderer draws frames of changing size and style one after another"
             }
 }
 
-TEST_CASE("a node is uploaded once, only with the attributes in use, and freed with the scene", "[gles]") {
+TEST_CASE("a node is uploaded once, with the colours in use, and freed with the scene", "[gles]") {
     Gles gles;
     if (!gles)
         return;
     std::uint64_t bare = gles.renderer->gpuBytes();
     Style style = plainStyle(1);
-    FramePlan plan = testPlan({randomNode(8, 1000, 10, {-5, -5, -5}, 0.01)}, {}, style);
+    std::vector<TestNode> nodes{randomNode(8, 1000, 10, {-5, -5, -5}, 0.01)};
+    FramePlan plan = testPlan(nodes, {}, style);
     gles.draw(plan);
     CHECK(gles.renderer->gpuBytes() - bare == 1000 * 12);
     gles.draw(plan);
     CHECK(gles.renderer->gpuBytes() - bare == 1000 * 12);
     plan.style.colourMode = ColourMode::intensity;
     plan.style.intensityRange = {0, 4095};
+    paintPlan(plan, nodes);
     gles.draw(plan);
-    CHECK(gles.renderer->gpuBytes() - bare == 1000 * 16);
+    CHECK(gles.renderer->gpuBytes() - bare == 1000 * 12); // in place of the node's own colours
     FramePlan empty = testPlan({}, {}, style);
     gles.draw(empty);
     CHECK(gles.renderer->gpuBytes() == bare);

@@ -1,4 +1,4 @@
-#include "client/render/gradients.hpp"
+#include "client/core/gradients.hpp"
 #include "client/render/raster_setup.hpp"
 #include "client/render/worker_pool.hpp"
 #include "tests/support/test_plan.hpp"

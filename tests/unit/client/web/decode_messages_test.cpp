@@ -16,7 +16,7 @@ DecodeJob sampleJob() {
     job.entry.strataBytes = {10, 20, 30, 40};
     job.entry.attributeBytes = {1, 2, 3};
     job.strata = 2;
-    job.wantsIntensity = true;
+    job.block = 3;
     return job;
 }
 
@@ -27,9 +27,11 @@ ResidentNode sampleNode() {
     node.positionShift = 3;
     node.pointCount = 2;
     node.totalPoints = 9;
+    node.shownUnit = 257;
     node.positionWords = {1, 2, 3, 4};
     node.positionLowWords = {5, 6};
     node.colourWords = {7, 8};
+    node.columns = {2, {{pictureIntensity, 2}}, {1, 2, 3, 4}};
     return node;
 }
 
@@ -47,7 +49,7 @@ TEST_CASE("a decoding job arrives as it was sent") {
     CHECK(back->entry.strataBytes == job.entry.strataBytes);
     CHECK(back->entry.attributeBytes == job.entry.attributeBytes);
     CHECK(back->strata == 2);
-    CHECK(back->wantsIntensity);
+    CHECK(back->block == 3);
 }
 
 TEST_CASE("an answer brings a node whose arrays have their sizes") {
@@ -58,6 +60,7 @@ TEST_CASE("an answer brings a node whose arrays have their sizes") {
     CHECK(back->nodeBits == 24);
     CHECK(back->positionShift == 3);
     CHECK(back->totalPoints == 9);
+    CHECK(back->shownUnit == 257);
     for (int i = 0; i < web::nodeArrayCount; ++i) {
         ByteSpan from = web::nodeArray(node, i);
         REQUIRE(web::nodeArray(*back, i).size() == from.size());
@@ -66,20 +69,20 @@ TEST_CASE("an answer brings a node whose arrays have their sizes") {
     CHECK(back->positionWords == node.positionWords);
     CHECK(back->positionLowWords == node.positionLowWords);
     CHECK(back->colourWords == node.colourWords);
-    CHECK(back->intensity.empty());
+    CHECK(back->columns == node.columns);
 }
 
-TEST_CASE("intensities alone travel without positions") {
+TEST_CASE("attributes alone travel without positions") {
     DecodeJob job = sampleJob();
     job.strata = 0;
     CHECK(web::decodeJob(web::encodeJob(job)).ok());
     ResidentNode node;
     node.pointCount = node.totalPoints = 3;
-    node.intensity = {1, 2, 3};
+    node.columns = {3, {{4, 1}, {5, 8}}, Bytes(27)};
     auto back = web::decodeAnswer(web::encodeAnswer(node));
     REQUIRE(back.ok());
     CHECK(back->positionWords.empty());
-    CHECK(back->intensity.size() == 3);
+    CHECK(back->columns == node.columns);
 }
 
 TEST_CASE("an array that is neither whole nor absent is refused") {

@@ -1,4 +1,4 @@
-#include "client/render/gradients.hpp"
+#include "client/core/gradients.hpp"
 
 #include <algorithm>
 #include <cmath>
