@@ -3,6 +3,7 @@
 #include "client/core/json.hpp"
 #include "shared/base/text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -104,6 +105,24 @@ Result<json> backgroundOf(const std::string& text) {
     return colour;
 }
 
+// What the parameter `style` says.
+Result<Style> styleOf(const Query& query) {
+    const std::string* text = query.find(parameters::style.name);
+    if (!text)
+        return Style();
+    Result<Style> style = styleFromJson(*text);
+    if (!style.ok())
+        return parameterError(parameters::style.name, style.error().sentence(),
+                              "give a style as for stipple render --style");
+    // A larger one takes more work than a picture may.
+    if (std::max(style->sizePixels, style->minSizePixels) > parameters::mostPixels ||
+        style->maxSizePixels > parameters::mostPixels)
+        return parameterError(parameters::style.name,
+                              cat("points of more than ", parameters::mostPixels, " pixels are not drawn"),
+                              "give smaller sizes");
+    return style;
+}
+
 Status takeStyle(const Query& query, headless::PictureRequest& request) {
     json style = json::object(), edl = json::object();
     STIPPLE_CHECK(takeChoice(query, parameters::mode, style, "colourMode"));
@@ -117,7 +136,8 @@ Status takeStyle(const Query& query, headless::PictureRequest& request) {
         STIPPLE_TRY(colour, backgroundOf(*text));
         style["background"] = colour;
     }
-    STIPPLE_TRY(read, styleFromJson(style));
+    STIPPLE_TRY(base, styleOf(query));
+    STIPPLE_TRY(read, styleFromJson(style, base));
     request.style = read;
     return {};
 }

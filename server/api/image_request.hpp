@@ -23,7 +23,9 @@ namespace image_parameters {
 // The names are those of client/core/json.hpp.
 inline constexpr std::array<std::string_view, 3> views{"iso", "top", "front"};
 inline constexpr std::array<std::string_view, 2> projections{"perspective", "orthographic"};
-inline constexpr std::array<std::string_view, 3> modes{"rgb", "intensity", "elevation"};
+inline constexpr std::array<std::string_view, 9> modes{
+    "rgb",           "intensity", "elevation", "classification", "returnNumber", "numberOfReturns",
+    "pointSourceId", "gpsTime",   "level"};
 inline constexpr std::array<std::string_view, 6> gradients{"viridis",  "turbo", "inferno",
                                                            "spectral", "grey",  "terrain"};
 inline constexpr std::array<std::string_view, 2> shapes{"circle", "square"};
@@ -101,7 +103,7 @@ inline constexpr Parameter mode{.name = "mode",
                                 .example = "elevation",
                                 .usual = "rgb"};
 inline constexpr Parameter gradient{.name = "gradient",
-                                    .description = "Of intensity and elevation.",
+                                    .description = "Of all modes but rgb and classification.",
                                     .kind = ParameterKind::choice,
                                     .choices = gradients,
                                     .example = "turbo",
@@ -130,6 +132,13 @@ inline constexpr Parameter background{.name = "background",
                                       .example = "ffffff",
                                       .usual = "181a1e",
                                       .pattern = "^[0-9A-Fa-f]{6}$"};
+inline constexpr Parameter style{
+    .name = "style",
+    .description = "How points look, as JSON with the fields of `stipple render --style`: colours by any "
+                   "attribute, mixtures, filters, hidden classes, clip boxes. Parameters of their own go "
+                   "before it.",
+    .example = R"({"colourMode":"elevation","filters":[{"attribute":"Intensity","min":1}]})"};
+inline constexpr double mostPixels = 64; // of a point
 inline constexpr Parameter budget{.name = "budget",
                                   .description = "Points drawn at most.",
                                   .kind = ParameterKind::count,
@@ -144,13 +153,25 @@ inline constexpr Parameter format{.name = "format",
                                   .example = "png"};
 } // namespace image_parameters
 
-inline constexpr std::array imageParameters{
-    image_parameters::view,        image_parameters::eye,        image_parameters::target,
-    image_parameters::up,          image_parameters::projection, image_parameters::fov,
-    image_parameters::orthoHeight, image_parameters::width,      image_parameters::height,
-    image_parameters::mode,        image_parameters::gradient,   image_parameters::pointSize,
-    image_parameters::pointShape,  image_parameters::edl,        image_parameters::background,
-    image_parameters::budget,      image_parameters::format,     versionParameter};
+inline constexpr std::array imageParameters{image_parameters::view,
+                                            image_parameters::eye,
+                                            image_parameters::target,
+                                            image_parameters::up,
+                                            image_parameters::projection,
+                                            image_parameters::fov,
+                                            image_parameters::orthoHeight,
+                                            image_parameters::width,
+                                            image_parameters::height,
+                                            image_parameters::mode,
+                                            image_parameters::gradient,
+                                            image_parameters::pointSize,
+                                            image_parameters::pointShape,
+                                            image_parameters::edl,
+                                            image_parameters::background,
+                                            image_parameters::style,
+                                            image_parameters::budget,
+                                            image_parameters::format,
+                                            versionParameter};
 
 // Errors as those of Query, which name the parameter.
 Result<headless::PictureRequest> imageRequestOf(const Query& query);

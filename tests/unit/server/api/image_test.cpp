@@ -91,7 +91,10 @@ TEST_CASE("a picture shows what its parameters say") {
     for (auto more :
          {"&view=top", "&view=front", "&projection=orthographic", "&mode=elevation", "&mode=intensity",
           "&pointSize=9", "&pointSize=9&pointShape=square", "&edl=off", "&background=ffffff", "&budget=50",
-          "&eye=0,0,400000&target=65000,65000,0", "&mode=elevation&gradient=turbo"}) {
+          "&eye=0,0,400000&target=65000,65000,0", "&mode=elevation&gradient=turbo", "&mode=level",
+          "&mode=pointSourceId", R"(&style={"colourMode":"elevation"})",
+          R"(&style={"filters":[{"attribute":"Intensity","max":30000}]})",
+          R"(&style={"clipBoxes":[{"centre":[65000,65000,65000],"halfSize":[30000,30000,99000]}]})"}) {
         INFO(more);
         auto answer = api.ask(tiny + more);
         CHECK(answer.status == 200);
@@ -149,12 +152,24 @@ TEST_CASE("parameters of pictures that can't be are refused by name") {
     CHECK(faultOf("height=8192") == "height");
     CHECK(faultOf("mode=colour") == "mode");
     CHECK(faultOf("pointSize=0") == "pointSize");
+    for (auto style : {"{", "7", R"({"shape":"star"})", R"({"sizePixels":65})", R"({"maxSizePixels":400})",
+                       R"({"minSizePixels":100,"maxSizePixels":200})", R"({"colourMode":"attribute"})",
+                       R"({"clipBoxes":[{"rotation":[0,0,0,0]}]})"}) {
+        INFO(style);
+        CHECK(faultOf(std::string("style=") + style) == "style");
+    }
     CHECK(faultOf("edl=1") == "edl");
     CHECK(faultOf("budget=5000001") == "budget");
     for (auto colour : {"fff", "gggggg", "1234567", "-1-1-1", "+1+1+1", "0x0x0x"}) {
         INFO(colour);
         CHECK(faultOf(std::string("background=") + colour) == "background");
     }
+}
+
+TEST_CASE("parameters of their own go before the style") {
+    Style style = requestOf(R"(style={"colourMode":"gpsTime","gradient":"grey"}&mode=level)").style;
+    CHECK(style.colourMode == ColourMode::level);
+    CHECK(style.gradient == GradientName::grey);
 }
 
 TEST_CASE("every choice of a picture's parameters is one that the renderer knows") {
