@@ -1,18 +1,12 @@
+import './colour_panel.ts';
+
 import { css, html, type TemplateResult } from 'lit';
 
 import type { Style } from '../wasm/values.ts';
-import { choice, select, slider } from './fields.ts';
+import { choice, slider } from './fields.ts';
 import { formatCompact, ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
-const gradients: [Style['gradient'], string][] = [
-    ['viridis', 'Viridis'],
-    ['turbo', 'Turbo'],
-    ['inferno', 'Inferno'],
-    ['spectral', 'Spectral'],
-    ['terrain', 'Terrain'],
-    ['grey', 'Grey'],
-];
 const spacingSize: [Style['sizeMode'], string] = ['spacing', 'Spacings'];
 
 /** How the clouds are looked at: view, points, colour, light. */
@@ -29,19 +23,11 @@ export class LookPanel extends ModelElement {
                 grid-template-columns: repeat(3, 1fr);
                 gap: 0.4rem;
             }
-            .colour {
-                width: 100%;
-                height: 2rem;
-                padding: 2px;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 6px;
-            }
         `,
     ];
 
     override render(): TemplateResult {
-        return html`${this.renderView()} ${this.renderPoints()} ${this.renderColour()} ${this.renderLight()}`;
+        return html`${this.renderView()} ${this.renderPoints()} <stipple-colour .model=${this.model}></stipple-colour> ${this.renderLight()}`;
     }
 
     private renderView(): TemplateResult {
@@ -192,40 +178,6 @@ export class LookPanel extends ModelElement {
         }
     }
 
-    private renderColour(): TemplateResult {
-        const { style } = this.model;
-        return html`<fieldset>
-            <legend>Colour</legend>
-            ${select(
-                'Colour by',
-                style.colourMode,
-                [
-                    ['rgb', 'RGB'],
-                    ['intensity', 'Intensity'],
-                    ['elevation', 'Elevation'],
-                ],
-                (colourMode) => this.model.changeStyle({ colourMode }),
-            )}
-            ${style.colourMode === 'rgb'
-                ? ''
-                : select('Gradient', style.gradient, gradients, (gradient) =>
-                      this.model.changeStyle({ gradient }),
-                  )}
-            <label class="row">
-                <span>Background</span>
-                <input
-                    class="colour"
-                    type="color"
-                    .value=${hexOf(style.background)}
-                    @input=${(event: Event) =>
-                        this.model.changeStyle({
-                            background: bytesOf((event.target as HTMLInputElement).value),
-                        })}
-                />
-            </label>
-        </fieldset>`;
-    }
-
     private renderLight(): TemplateResult {
         const { edl } = this.model.style;
         return html`<fieldset>
@@ -262,14 +214,6 @@ export class LookPanel extends ModelElement {
             )}
         </fieldset>`;
     }
-}
-
-function hexOf(bytes: [number, number, number]): string {
-    return `#${bytes.map((byte) => byte.toString(16).padStart(2, '0')).join('')}`;
-}
-function bytesOf(hex: string): [number, number, number] {
-    const value = Number.parseInt(hex.slice(1), 16);
-    return [(value >> 16) & 255, (value >> 8) & 255, value & 255];
 }
 
 customElements.define('stipple-look', LookPanel);

@@ -13,11 +13,53 @@ export interface Camera {
     orthoHeight: number;
 }
 
+export type ColourMode =
+    | 'rgb'
+    | 'intensity'
+    | 'elevation'
+    | 'classification'
+    | 'returnNumber'
+    | 'numberOfReturns'
+    | 'pointSourceId'
+    | 'gpsTime'
+    | 'level'
+    | 'attribute'
+    | 'mix';
+
+export interface MixedColour {
+    colourMode: ColourMode;
+    attribute?: string;
+    range?: [number, number] | null;
+    weight?: number;
+}
+
+export interface AttributeFilter {
+    attribute: string;
+    min: number | null;
+    max: number | null;
+}
+
+export interface ClipBox {
+    mode: 'highlight' | 'hideInside' | 'hideOutside';
+    centre: Vector;
+    halfSize: Vector;
+    axes?: [Vector, Vector, Vector];
+    rotation?: [number, number, number, number];
+}
+
 export interface Style {
-    colourMode: 'rgb' | 'intensity' | 'elevation';
+    colourMode: ColourMode;
     gradient: 'viridis' | 'turbo' | 'inferno' | 'spectral' | 'grey' | 'terrain';
     intensityRange: [number, number] | null;
     elevationRange: [number, number] | null;
+    levelRange: [number, number] | null;
+    attribute: string;
+    attributeRange: [number, number] | null;
+    mix: MixedColour[];
+    hiddenClasses: number[];
+    filters: AttributeFilter[];
+    clipBoxes: ClipBox[];
+    highlight: Vector;
     sizeMode: 'fixed' | 'world' | 'spacing' | 'adaptive';
     sizePixels: number;
     sizeWorld: number;
@@ -59,6 +101,14 @@ export interface CloudError {
     sentence: string;
 }
 
+/** A class of points: client/core/json.hpp, names and colours of shared/points/point_classes.hpp. */
+export interface CloudClass {
+    class: number;
+    name: string;
+    colour: Vector;
+    points: number;
+}
+
 export interface CloudState {
     id: number;
     name: string;
@@ -69,6 +119,7 @@ export interface CloudState {
     bounds?: { min: Vector; max: Vector } | null;
     crs?: string;
     attributes?: string[];
+    classes?: CloudClass[];
 }
 
 /** A point of a cloud, exactly as its file has it. */

@@ -6,7 +6,7 @@ import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
 import type { Camera, CloudState, Counters, Limits, NamedView, PickAnswer, Projection, Style } from './values.ts';
 
-type Partially<T> = { [K in keyof T]?: T[K] extends object ? Partial<T[K]> : T[K] };
+type Partially<T> = { [K in keyof T]?: T[K] extends unknown[] ? T[K] : T[K] extends object ? Partial<T[K]> : T[K] };
 export type StyleChange = Partially<Style>;
 
 /** The viewer's program (client/web/viewer.hpp) in TypeScript's types. Calls that fail throw the sentence. */
