@@ -120,6 +120,10 @@ class CloudBench {
             style.sizeWorld =
                 mode.worldSizeSpacings * std::sqrt(size.x * size.y / static_cast<double>(info_.points));
         }
+        if (mode.clipPart > 0)
+            style.clipBoxes.push_back({(info_.bounds.min + info_.bounds.max) * 0.5,
+                                       (info_.bounds.max - info_.bounds.min) * (mode.clipPart / 2),
+                                       axesTurned(30)});
         return resolvedStyle(style, std::vector{metadata_});
     }
 

@@ -46,6 +46,15 @@ constexpr const char* table = R"json([
 {"name": "edl-4", "about": "circles of 2 pixels, lighting of 4 neighbours", "style": {"edl": {"neighbours": 4}}},
 {"name": "intensity", "about": "default, by intensity", "style": {"colourMode": "intensity"}},
 {"name": "elevation", "about": "default, by elevation", "style": {"colourMode": "elevation"}},
+{"name": "classification", "about": "default, by classification", "style": {"colourMode": "classification"}},
+{"name": "gps-time", "about": "default, by GPS time", "style": {"colourMode": "gpsTime"}},
+{"name": "mix", "about": "default, half colour, half intensity",
+ "style": {"colourMode": "mix", "mix": [{"colourMode": "rgb"}, {"colourMode": "intensity"}]}},
+{"name": "filter", "about": "default, without points of later returns", "style": {"filters": [{"attribute": "Return Number", "max": 1}]}},
+{"name": "clip", "about": "default, without what lies outside a turned box of half the cloud's sides", "clipPart": 0.5},
+{"name": "gles-clip", "about": "clip, with OpenGL ES", "clipPart": 0.5, "backend": "gles"},
+{"name": "gles-classification", "about": "default, by classification, with OpenGL ES", "backend": "gles",
+ "style": {"colourMode": "classification"}},
 {"name": "gles-default", "about": "default, with OpenGL ES", "backend": "gles"},
 {"name": "gles-continuous", "about": "default, with continuous detail and OpenGL ES", "backend": "gles",
  "style": {"detail": {"mode": "continuous"}}},
@@ -91,6 +100,7 @@ Result<Mode> modeFromJson(const json& value) {
     fields.choice("backend", mode.backend, backends);
     fields.flag("sweep", mode.sweep);
     fields.number("worldSizeSpacings", mode.worldSizeSpacings, 0, 1e6);
+    fields.number("clipPart", mode.clipPart, 0, 1);
     STIPPLE_CHECK(fields.finish());
     return mode;
 }
@@ -129,7 +139,8 @@ json toJson(const Mode& mode) {
             {"limits", stipple::toJson(mode.limits)},
             {"backend", backendName(mode.backend)},
             {"sweep", mode.sweep},
-            {"worldSizeSpacings", mode.worldSizeSpacings}};
+            {"worldSizeSpacings", mode.worldSizeSpacings},
+            {"clipPart", mode.clipPart}};
 }
 
 } // namespace stipple::bench

@@ -25,6 +25,9 @@ struct Mode {
     // Sizes in world units, as a multiple of the mean distance of points seen from above, √(x side × y side /
     // points); 0: style.sizeWorld as it is.
     double worldSizeSpacings = 0;
+    // Hides what lies outside a box in the middle of the cloud, this part of it long along each axis and
+    // turned by 30 degrees about z; 0: no box.
+    double clipPart = 0;
 };
 
 // A new way to draw is a line in mode.cpp.
