@@ -33,8 +33,8 @@ inline bool isExact(const headless::EglContext& context) {
     return false;
 }
 
-// How many of so many pixels may differ by more than a test's levels: 1 in 2000; with a GPU 1 in 100 (an H200: at
-// most 0.96 % in one scene, 0.1 % in all; the scenes are small and their points big).
+// How many of so many pixels may differ by more than a test's levels: 1 in 2000; with a GPU 1 in 100 (an
+// H200: at most 0.96 % in one scene, 0.1 % in all; the scenes are small and their points big).
 inline std::size_t allowedPixels(const headless::EglContext& context, std::size_t pixels) {
     return pixels / (isExact(context) ? 2000 : 100);
 }
