@@ -41,6 +41,13 @@ async function openTown(options) {
     return opened;
 }
 
+async function townBounds() {
+    const answer = await fetch(new URL('/api/v1/clouds', server.address));
+    const [{ id }] = (await answer.json()).clouds;
+    const cloud = await fetch(new URL(`/api/v1/clouds/${id}`, server.address));
+    return (await cloud.json()).bounds;
+}
+
 function report(what, figures) {
     console.log(`  ${what}: ${JSON.stringify(figures)}`);
 }
@@ -132,11 +139,52 @@ describe('the picture', () => {
             },
             tolerance: { share: 0.01, mean: 0.6 },
         },
+        'classes, of them ground hidden, second returns filtered': {
+            style: {
+                colourMode: 'classification',
+                sizePixels: 3,
+                hiddenClasses: [2],
+                filters: [{ attribute: 'Return Number', max: 1 }],
+            },
+            tolerance: { share: 0.02, mean: 0.7 },
+        },
+        'a turned clip box': {
+            style: (bounds) => ({
+                sizePixels: 3,
+                clipBoxes: [
+                    {
+                        mode: 'hideOutside',
+                        centre: bounds.min.map((least, axis) => (least + bounds.max[axis]) / 2),
+                        halfSize: bounds.min.map((least, axis) => (bounds.max[axis] - least) / 4),
+                        rotation: [0, 0, 0.3827, 0.9239],
+                    },
+                ],
+            }),
+            tolerance: { share: 0.02, mean: 0.7 },
+        },
+        'high-quality splats': {
+            style: { splats: { enabled: true }, sizePixels: 4, edl: { enabled: false } },
+            tolerance: { share: 0.02, mean: 0.7 },
+        },
+        'adaptive sizes': {
+            style: { sizeMode: 'adaptive', edl: { enabled: false } },
+            tolerance: { share: 0.03, mean: 2 },
+        },
+        'paraboloids': {
+            style: { shape: 'paraboloid', sizePixels: 6, edl: { enabled: false } },
+            tolerance: { share: 0.02, mean: 0.7 },
+        },
+        'expanded late': {
+            // A centre that falls into another pixel takes its whole disc with it.
+            style: { delayedExpansion: 'on', sizePixels: 3, edl: { enabled: false } },
+            tolerance: { share: 0.06, mean: 3 },
+        },
     };
 
-    for (const [name, { style, tolerance }] of Object.entries(looks)) {
+    for (const [name, { style: wanted, tolerance }] of Object.entries(looks)) {
         test(`equals the native GLES picture: ${name}`, async () => {
             const { page } = await openTown(size);
+            const style = typeof wanted === 'function' ? wanted(await townBounds()) : wanted;
             await page.evaluate((s) => window.stipple.setStyle(s), style);
             await settle(page);
             const drawn = await readPixels(page);
@@ -198,6 +246,49 @@ describe('the picture', () => {
         for (const [control, share] of Object.entries(shares))
             assert.ok(share > 0.005, `${control} changed ${share} of the picture`);
         await keepScreenshot(page, 'controls');
+        await page.close();
+    });
+});
+
+describe('colour and hiding', () => {
+    test('classes are named and can be hidden; filters and clip boxes take effect, wrong ones are said', async () => {
+        const { page } = await openTown();
+        await page.getByLabel('Colour by').selectOption('classification');
+        await settle(page);
+        const all = coverage(await readPixels(page));
+        const ground = page.getByLabel('Class 2: Ground');
+        await ground.uncheck();
+        await settle(page);
+        const hidden = await counters(page);
+        const withoutGround = coverage(await readPixels(page));
+        assert.ok(hidden.frame.pointsHidden > 0);
+        assert.ok(withoutGround < 0.95 * all);
+        await keepScreenshot(page, 'classes');
+        await ground.check();
+        await settle(page);
+        assert.equal(coverage(await readPixels(page)), all);
+
+        await page.getByLabel('Show by').selectOption('Return Number');
+        await page.getByLabel('From, to: least').fill('2');
+        await page.getByLabel('From, to: least').press('Enter');
+        await settle(page);
+        assert.ok(coverage(await readPixels(page)) < 0.5 * all);
+        await page.getByLabel('Show by').selectOption('');
+        await settle(page);
+
+        const { min, max } = await townBounds();
+        const centre = min.map((least, axis) => (least + max[axis]) / 2);
+        const halfSize = min.map((least, axis) => (max[axis] - least) / 8);
+        const boxes = page.getByRole('textbox', { name: 'Clip boxes' });
+        await boxes.fill(JSON.stringify([{ mode: 'hideOutside', centre, halfSize }]));
+        await boxes.blur();
+        const clipped = await settle(page);
+        assert.ok(clipped.frame.nodesClipped > 0);
+        assert.ok(coverage(await readPixels(page)) < 0.5 * all);
+        await boxes.fill('[{"mode": "hideOutside"');
+        await boxes.blur();
+        await page.getByRole('alert').first().waitFor();
+        assert.match(await page.getByRole('alert').first().textContent(), /clip boxes/);
         await page.close();
     });
 });
