@@ -93,7 +93,7 @@ Status pick(const Options& options) {
 
 Status render(const Options& options) {
     if (options.output.empty() == options.pick.empty())
-        return Error{ErrorCode::invalidArgument, "either a picture or a point is asked for", "render",
+        return Error{ErrorCode::invalidArgument, "either a picture or a point is asked for", "--output",
                      "give --output OUT.png, or --pick X,Y"};
     if (!options.pick.empty())
         return pick(options);
