@@ -157,6 +157,18 @@ ExpectedPick expectedPick(const ReferencePoints& points, const PickRequest& requ
     return {best.order, !isTie && firstDoubt > best.away};
 }
 
+std::uint32_t orderOf(const std::optional<PickHit>& hit, const FramePlan& plan) {
+    if (!hit)
+        return 0;
+    std::uint32_t first = 0;
+    for (const DrawNode& node : plan.nodes) {
+        if (node.node == hit->node)
+            return first + hit->point + 1;
+        first += node.pointCount;
+    }
+    return UINT32_MAX;
+}
+
 std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, int toleranceLevels) {
     std::size_t wrong = 0;
     for (std::size_t at = 0; at < reference.unsure.size(); ++at) {

@@ -7,6 +7,7 @@
 #include "client/render/pick.hpp"
 #include "tests/support/test_plan.hpp"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct ExpectedPick {
     bool isSure = true;
 };
 ExpectedPick expectedPick(const ReferencePoints& points, const PickRequest& request);
+// What was picked, as such an order: the plan's points are counted in the order of its nodes.
+std::uint32_t orderOf(const std::optional<PickHit>& hit, const FramePlan& plan);
 
 // Differing pixels that `reference` is sure of.
 std::size_t wrongPixels(const Image& image, const ReferencePicture& reference, int toleranceLevels);

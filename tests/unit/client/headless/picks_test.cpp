@@ -86,18 +86,6 @@ ReferencePoints referenceOf(const OpenCloud& cloud, const FramePlan& plan) {
     return referencePoints(view, plan.style, points);
 }
 
-std::uint32_t orderOf(const std::optional<PickHit>& hit, const FramePlan& plan) {
-    if (!hit)
-        return 0;
-    std::uint32_t first = 0;
-    for (const DrawNode& node : plan.nodes) {
-        if (node.node == hit->node)
-            return first + hit->point + 1;
-        first += node.pointCount;
-    }
-    return UINT32_MAX;
-}
-
 // Anywhere, and every other time near a pixel that shows a point.
 PickRequest someRequest(const ReferencePoints& points, TestRandom& random) {
     auto pixels = static_cast<std::uint32_t>(points.order.size());

@@ -43,19 +43,6 @@ std::vector<Scene> scenes() {
     return all;
 }
 
-// Points of the plan are in the nodes' order there, as in the reference.
-std::uint32_t orderOf(const std::optional<PickHit>& hit, const FramePlan& plan) {
-    if (!hit)
-        return 0;
-    std::uint32_t first = 0;
-    for (const DrawNode& node : plan.nodes) {
-        if (node.node == hit->node)
-            return first + hit->point + 1;
-        first += node.pointCount;
-    }
-    return UINT32_MAX;
-}
-
 std::vector<PickRequest> requestsFor(const TestView& view, int count) {
     TestRandom random(17);
     std::vector<PickRequest> requests;
