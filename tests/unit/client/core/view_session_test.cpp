@@ -747,7 +747,7 @@ TEST_CASE("a node whose points can't be read answers with the error, and stays d
     NodeKey key = NodeKey{}.child(1);
     const NodeEntry& entry = nodeOf(bigCloud(), key.text());
     for (std::uint64_t at = 0; at < 64; ++at)
-        script->file[entry.offsetBytes + at] ^= 0x5A;
+        script->file[static_cast<std::size_t>(entry.offsetBytes + at)] ^= 0x5A;
     REQUIRE(fixture.session->askPoint({fixture.session->clouds()[0].id, key, 5}).ok());
     REQUIRE(fixture.settle());
     std::vector<PointAnswer> answers = fixture.session->takePointAnswers();
