@@ -2,6 +2,7 @@
 
 #include "client/render/drawn_octree.hpp"
 #include "client/render/raster_setup.hpp"
+#include "client/render/software_cells.hpp"
 #include "client/render/software_expansion.hpp"
 #include "client/render/software_points.hpp"
 #include "client/render/software_shading.hpp"
@@ -36,11 +37,16 @@ class CellRenderer final : public SoftwareRenderer {
             drawExpanded(frame);
         else
             drawWhole(frame, cells_);
-        if (frame.splats)
+        if (frame.splats) {
+            gather(cells_);
             blend(frame, late);
+        }
         if (late)
-            byRows([&](int y) { nameExpandedRow(frame, centres(), y, cells_.data()); });
-        colour(plan, frame, edl);
+            byRows([&](int y) {
+                cells_.gatherRow(y);
+                nameExpandedRow(frame, centres(), y, cells_.cells());
+            });
+        colour(plan, frame, edl, frame.splats || late);
         plan.counters.passesRun += 2 + (frame.splats ? 1 : 0) + (late ? 1 : 0);
         if (edl.enabled)
             byRows([&](int y) { shadeRow(edl, distances_, y, image_); });
@@ -51,8 +57,8 @@ class CellRenderer final : public SoftwareRenderer {
     std::vector<float> distances() const override {
         std::vector<float> result(image_.rgba.size() / 4);
         for (std::size_t i = 0; i < result.size(); ++i)
-            if (cells_[i] != emptyCell)
-                result[i] = distanceOfStep(frame_, static_cast<std::uint32_t>(cells_[i] >> indexBits));
+            if (std::uint64_t cell = cells_.cells()[i]; cell != emptyCell)
+                result[i] = distanceOfStep(frame_, static_cast<std::uint32_t>(cell >> indexBits));
         return result;
     }
 
@@ -66,7 +72,10 @@ class CellRenderer final : public SoftwareRenderer {
         int top = image_.height - target.window.bottom;
         clearRows(cells_, top - target.window.height, top);
         makeRuns();
-        drawPoints(target.frame, cells_);
+        // Few points: all threads draw into the first part, and the others need not be looked through.
+        workers_.run(runs_.size(), [&](std::size_t i) {
+            drawRun(target.frame, runs_[i], cells_.cells(), workers_.threads() > 1);
+        });
         std::vector<PickSample> samples = samplesIn(target.window);
         clearRows(cells_, 0, image_.height); // the last picture is gone
         return nearestHit(target, samples);
@@ -79,7 +88,8 @@ class CellRenderer final : public SoftwareRenderer {
             std::size_t line =
                 static_cast<std::size_t>(image_.height - 1 - row) * static_cast<std::size_t>(image_.width);
             for (int column = window.left; column < window.left + window.width; ++column)
-                if (std::uint64_t cell = cells_[line + static_cast<std::size_t>(column)]; cell != emptyCell)
+                if (std::uint64_t cell = cells_.cells()[line + static_cast<std::size_t>(column)];
+                    cell != emptyCell)
                     samples.push_back(sampleOf(cell, column, row));
         }
         return samples;
@@ -101,10 +111,8 @@ class CellRenderer final : public SoftwareRenderer {
                         plan.height <= maxPictureSide;
         image_.width = drawable ? plan.width : 0;
         image_.height = drawable ? plan.height : 0;
-        std::size_t pixels = static_cast<std::size_t>(image_.width) * static_cast<std::size_t>(image_.height);
-        image_.rgba.resize(4 * pixels);
-        cells_.resize(pixels + 1);
-        cells_[pixels] = 0;
+        cells_.resize(image_.width, image_.height, workers_.threads());
+        image_.rgba.resize(4 * cells_.pixels());
         return drawable;
     }
 
@@ -142,12 +150,10 @@ class CellRenderer final : public SoftwareRenderer {
         return node.paint && node.paint->hidden > 0 ? node.paint->words->data() : nullptr;
     }
 
-    void clearRows(std::vector<std::uint64_t>& cells, int first, int end) {
+    void clearRows(CellParts& cells, int first, int end) {
         byRows([&](int y) {
-            auto width = static_cast<std::size_t>(image_.width);
             if (y >= first && y < end)
-                std::fill_n(cells.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(y) * width),
-                            width, emptyCell);
+                cells.clearRow(y);
         });
     }
 
@@ -164,26 +170,43 @@ class CellRenderer final : public SoftwareRenderer {
             }
     }
 
-    void drawWhole(const RasterFrame& frame, std::vector<std::uint64_t>& cells) {
+    void drawWhole(const RasterFrame& frame, CellParts& cells) {
         clearRows(cells, 0, image_.height);
         drawPoints(frame, cells);
     }
 
-    void drawPoints(const RasterFrame& frame, std::vector<std::uint64_t>& cells) {
-        bool shared = workers_.threads() > 1;
-        workers_.run(runs_.size(), [&](std::size_t i) { drawRun(frame, runs_[i], cells.data(), shared); });
+    void drawPoints(const RasterFrame& frame, CellParts& cells) {
+        drawPieces(cells, runs_.size(), [&](std::size_t i, std::uint64_t* part, bool shared) {
+            drawRun(frame, runs_[i], part, shared);
+        });
     }
 
-    Centres centres() const { return {&nodes_, octree_.words.data(), centres_.data()}; }
+    // draw(piece, part, shared) for all pieces: into the first part, if `shared` by several threads.
+    template <class Draw>
+    void drawPieces(CellParts& cells, std::size_t pieces, const Draw& draw) {
+        auto threads = static_cast<std::size_t>(workers_.threads());
+        std::atomic<std::size_t> next{0};
+        workers_.run(threads, [&](std::size_t thread) {
+            for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)
+                draw(i, cells.part(thread % cells.count()), threads > cells.count());
+        });
+    }
+
+    // Before anybody looks at the cells; where each row is looked at alone, it is gathered then.
+    void gather(CellParts& cells) {
+        if (cells.count() > 1)
+            byRows([&](int y) { cells.gatherRow(y); });
+    }
+
+    Centres centres() const { return {&nodes_, octree_.words.data(), centres_.cells()}; }
 
     void drawExpanded(const RasterFrame& frame) {
-        centres_.resize(cells_.size());
-        centres_.back() = 0;
+        centres_.resize(image_.width, image_.height, workers_.threads());
         drawWhole(singlePixelFrame(frame), centres_);
+        gather(centres_);
         clearRows(cells_, 0, image_.height);
-        bool shared = workers_.threads() > 1;
-        workers_.run(rowPieces(), [&](std::size_t piece) {
-            expandRows(frame, centres(), rowsOf(piece), cells_.data(), shared);
+        drawPieces(cells_, rowPieces(), [&](std::size_t piece, std::uint64_t* part, bool shared) {
+            expandRows(frame, centres(), rowsOf(piece), part, shared);
         });
     }
 
@@ -198,32 +221,34 @@ class CellRenderer final : public SoftwareRenderer {
             sums.assign(pixels, {});
             for (std::size_t i; (i = next.fetch_add(1, std::memory_order_relaxed)) < pieces;)
                 if (late)
-                    blendExpandedRows(frame, centres(), rowsOf(i), cells_.data(), sums.data());
+                    blendExpandedRows(frame, centres(), rowsOf(i), cells_.cells(), sums.data());
                 else
-                    blendRun(frame, *runNodes_[i], runs_[i], cells_.data(), sums.data());
+                    blendRun(frame, *runNodes_[i], runs_[i], cells_.cells(), sums.data());
         });
     }
 
-    void colour(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl) {
+    void colour(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl, bool gathered) {
         if (edl.enabled)
             distances_.resize(frame.width, frame.height, edl);
         std::vector<const PixelSums*> sums;
         for (const std::vector<PixelSums>& part : sums_)
             sums.push_back(part.data());
         byRows([&](int y) {
+            if (!gathered)
+                cells_.gatherRow(y);
             if (frame.splats)
-                return blendedRow(plan, frame, sums, cells_.data(), y, image_,
+                return blendedRow(plan, frame, sums, cells_.cells(), y, image_,
                                   edl.enabled ? &distances_ : nullptr);
-            colourRow(plan, frame, nodes_, cells_.data(), y, image_, edl.enabled ? &distances_ : nullptr);
+            colourRow(plan, frame, nodes_, cells_.cells(), y, image_, edl.enabled ? &distances_ : nullptr);
         });
     }
 
     WorkerPool workers_;
     Image image_;
     RasterFrame frame_; // of image_
-    std::vector<std::uint64_t> cells_;
-    std::vector<std::uint64_t> centres_; // points as single pixels: delayed expansion
-    DrawnOctree octree_;                 // adaptive sizes
+    CellParts cells_;
+    CellParts centres_;  // points as single pixels: delayed expansion
+    DrawnOctree octree_; // adaptive sizes
     std::vector<PlacedNode> nodes_;
     std::vector<PointRun> runs_;
     std::vector<const PlacedNode*> runNodes_;  // parallel to runs_

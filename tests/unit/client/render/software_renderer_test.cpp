@@ -56,13 +56,41 @@ TEST_CASE("the picture does not depend on the number of threads or the order of 
     style.shape = PointShape::circle;
     FramePlan plan = testPlan(nodes, {}, style);
     Image one = SoftwareRenderer::create(1)->render(plan);
-    for (int threads : {2, 3, 8}) {
+    for (int threads : {2, 3, 8, 11}) { // 11: some draw into the same cells
         auto renderer = SoftwareRenderer::create(threads);
         for (int repeat = 0; repeat < 3; ++repeat)
             CHECK(renderer->render(plan).rgba == one.rgba);
     }
     std::reverse(plan.nodes.begin(), plan.nodes.end());
     CHECK(SoftwareRenderer::create(1)->render(plan).rgba == one.rgba);
+}
+
+TEST_CASE("nothing of a picture is left in the next", "[software]") {
+    std::vector<TestNode> nodes;
+    for (std::uint64_t i = 0; i < 3; ++i)
+        nodes.push_back(randomNode(i, 30000, 10, {-5.0 + 0.5 * static_cast<double>(i), -5, -5}, 0.01));
+    std::vector<FramePlan> plans;
+    for (double pixels : {1, 3})
+        for (bool splats : {false, true})
+            for (DelayedExpansion expansion : {DelayedExpansion::off, DelayedExpansion::on})
+                for (int width : {320, 200}) {
+                    Style style = plainStyle(pixels);
+                    style.splats.enabled = splats;
+                    style.delayedExpansion = expansion;
+                    TestView view;
+                    view.width = width;
+                    std::vector<TestNode> some(nodes.begin(),
+                                               nodes.begin() + 1 + static_cast<long>(plans.size() % 3));
+                    plans.push_back(testPlan(some, view, style));
+                }
+    auto renderer = SoftwareRenderer::create(3);
+    for (std::size_t i = 0; i < plans.size(); ++i) {
+        INFO(i);
+        FramePlan& plan = plans[(i * 7) % plans.size()];
+        if (i % 3 == 1)
+            CHECK(renderer->pick(plan, {100, 120, 4}));
+        CHECK(renderer->render(plan).rgba == SoftwareRenderer::create(1)->render(plan).rgba);
+    }
 }
 
 TEST_CASE("a plan without nodes is the background", "[software]") {
