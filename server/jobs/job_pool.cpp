@@ -1,7 +1,5 @@
 #include "server/jobs/job_pool.hpp"
 
-#include "server/jobs/processors.hpp"
-
 #include <algorithm>
 #include <system_error>
 
@@ -12,7 +10,7 @@ namespace {
 constexpr int threadsForEachWorking = 4;
 } // namespace
 
-JobPool::JobPool(const JobLimits& limits) : limits_(limits), processors_(allowedProcessors()) {
+JobPool::JobPool(const JobLimits& limits) : limits_(limits) {
     if (limits_.working <= 0)
         limits_.working = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 2, 8);
     maxRunning_ = limits_.working * threadsForEachWorking;
@@ -109,7 +107,6 @@ JobCounts JobPool::counts() const {
 }
 
 void JobPool::work() {
-    runOn(processors_);
     std::unique_lock lock(mutex_);
     for (;;) {
         std::string client;

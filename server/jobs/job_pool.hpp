@@ -62,7 +62,6 @@ class JobPool {
     bool mayStart() const;
 
     JobLimits limits_;
-    const std::vector<int> processors_; // of who made the pool; who submits may be bound to one
     int maxRunning_, maxRunningPerClient_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;

@@ -1,6 +1,5 @@
 #include "server/net/loop.hpp"
 
-#include "server/jobs/processors.hpp"
 #include "server/net/connection.hpp"
 
 #include <boost/asio/co_spawn.hpp>
@@ -9,13 +8,9 @@
 
 namespace stipple::server {
 
-Loop::Loop(ServerState& state, std::vector<int> processors)
-    : state_(state), work_(context_.get_executor()), sweepTimer_(context_) {
+Loop::Loop(ServerState& state) : state_(state), work_(context_.get_executor()), sweepTimer_(context_) {
     scheduleSweep();
-    thread_ = std::thread([this, processors = std::move(processors)] {
-        runOn(processors);
-        context_.run();
-    });
+    thread_ = std::thread([this] { context_.run(); });
 }
 
 Loop::~Loop() = default;

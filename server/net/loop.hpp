@@ -46,8 +46,7 @@ class Connection;
 
 class Loop {
   public:
-    // `processors`: those that its thread runs on; none: any.
-    Loop(ServerState& state, std::vector<int> processors);
+    explicit Loop(ServerState& state);
     ~Loop(); // after join()
 
     net::io_context& context() { return context_; }

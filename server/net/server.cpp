@@ -1,6 +1,5 @@
 #include "server/net/server.hpp"
 
-#include "server/jobs/processors.hpp"
 #include "server/net/client_address.hpp"
 #include "server/net/loop.hpp"
 #include "shared/base/text.hpp"
@@ -17,6 +16,7 @@ namespace stipple::server {
 namespace {
 
 constexpr std::chrono::milliseconds acceptPause{100};
+constexpr int acceptedInTurn = 64; // connections, before the loop goes on with its answers
 // A connection that has been idle for this long is closed when others wait for a place.
 constexpr std::chrono::milliseconds evenIfFull{1000};
 // Descriptors that connections leave to files, event loops and whatever libraries open.
@@ -52,7 +52,10 @@ class BeastServer final : public Server {
         state_.handler = std::move(handler);
         state_.log = std::move(log);
         state_.metricsFor = options.metrics;
-        startLoops(options.threads);
+        int cores = static_cast<int>(std::thread::hardware_concurrency());
+        int threads = options.threads > 0 ? options.threads : std::clamp(cores, 1, 8);
+        for (int i = 0; i < threads; ++i)
+            loops_.push_back(std::make_unique<Loop>(state_));
         for (auto& loop : loops_)
             state_.metrics.push_back(&loop->metrics());
         acceptor_ = std::make_unique<Acceptor>(loops_.front()->context());
@@ -85,6 +88,8 @@ class BeastServer final : public Server {
             acceptor_->set_option(Acceptor::reuse_address(true), problem);
         if (!problem)
             acceptor_->bind(endpoint, problem);
+        if (!problem)
+            acceptor_->non_blocking(true, problem);
         if (!problem)
             acceptor_->listen(net::socket_base::max_listen_connections, problem);
         if (problem)
@@ -144,41 +149,46 @@ class BeastServer final : public Server {
         state_.connections.close();
     }
 
-    // One for each core, unless that would be too many. Where each core has one, it stays there: clients of a
-    // loop that has to wait for the core of another see it in their slowest answers.
-    void startLoops(int wanted) {
-        const std::vector<int> processors = allowedProcessors();
-        int cores = static_cast<int>(std::thread::hardware_concurrency());
-        int threads = wanted > 0 ? wanted : std::clamp(cores, 1, 8);
-        bool hasCoreEach = threads == static_cast<int>(processors.size());
-        for (int i = 0; i < threads; ++i)
-            loops_.push_back(std::make_unique<Loop>(
-                state_, hasCoreEach ? std::vector<int>{processors[static_cast<std::size_t>(i)]}
-                                    : std::vector<int>()));
-    }
-
     // Runs on the first loop, and deals connections out to all in turn. When descriptors run out, or as many
     // connections are open as may be, it waits a moment instead of spinning; clients queue in the kernel.
     Task<void> acceptForever() {
-        for (std::size_t next = 0; acceptor_->is_open();) {
-            if (state_.connections.all() >= state_.limits.connections) {
+        while (acceptor_->is_open()) {
+            if (isFull()) {
                 for (auto& loop : loops_)
                     loop->closeIdle(evenIfFull);
                 co_await pause();
                 continue;
             }
-            Loop& loop = *loops_[next];
-            auto [error, socket] = co_await acceptor_->async_accept(loop.context(), answered);
+            auto [error] = co_await acceptor_->async_wait(Acceptor::wait_read, answered);
             if (!error)
-                next = (next + 1) % loops_.size();
-            if (!error) {
-                dealOut(loop, std::move(socket));
-            } else if (error != net::error::operation_aborted && error != net::error::connection_aborted) {
+                error = acceptWaiting();
+            if (error && error != net::error::operation_aborted) {
                 if (error == net::error::no_descriptors)
                     state_.handler->spareDescriptors();
                 co_await pause();
             }
         }
+    }
+
+    bool isFull() const { return state_.connections.all() >= state_.limits.connections; }
+
+    // Lets in those that wait already. One at a time would be one for each round of the loop's answers, and a
+    // thousand clients that come at once wait for a thousand rounds.
+    Failure acceptWaiting() {
+        for (int i = 0; i < acceptedInTurn && !isFull(); ++i) {
+            Failure error;
+            Loop& loop = *loops_[nextLoop_];
+            Socket socket = acceptor_->accept(loop.context(), error);
+            if (error == net::error::would_block)
+                return {};
+            if (error == net::error::connection_aborted)
+                continue;
+            if (error)
+                return error;
+            nextLoop_ = (nextLoop_ + 1) % loops_.size();
+            dealOut(loop, std::move(socket));
+        }
+        return {};
     }
 
     void dealOut(Loop& loop, Socket socket) {
@@ -205,6 +215,7 @@ class BeastServer final : public Server {
     ServerState state_;
     std::vector<std::unique_ptr<Loop>> loops_;
     std::unique_ptr<Acceptor> acceptor_; // used on the first loop once it runs
+    std::size_t nextLoop_ = 0;           // that gets the next connection
     std::unique_ptr<Timer> pause_;
     const std::string certificatePath_, keyPath_;
     Tcp::endpoint endpoint_;
