@@ -1,5 +1,7 @@
 #include "server/verbs/site_options.hpp"
 
+#include "server/upstream/upstream_tokens.hpp"
+
 namespace stipple::server {
 
 namespace {
@@ -55,7 +57,8 @@ void addUpstreamOptions(CLI::App& verb, UpstreamOptions& upstream) {
               ->default_str("15"),
           verb.add_option("--upstream-ca", upstream.caPath,
                           "PEM file of the certificates that other servers' must rest on, instead of the "
-                          "system's"),
+                          "system's")
+              ->check(CLI::ExistingFile),
           verb.add_option("--upstream-token-file", upstream.tokenPath,
                           "File of the bearer tokens that other servers want: an origin and its token a line "
                           "(https://bucket.example TOKEN); read again on SIGHUP"),
@@ -99,6 +102,9 @@ Result<SiteOptions> siteOptions(const ChosenSite& chosen, bool isForThisMachine)
                                                                     : CorsRules::PublicFor::everyOrigin));
     options.cors = std::move(cors);
     options.api = chosen.api;
+    // A wrong name is told at the start, not when a cloud of another server is asked for.
+    if (!chosen.upstream.tokenPath.empty())
+        STIPPLE_CHECK(UpstreamTokens::load(chosen.upstream.tokenPath));
     return options;
 }
 

@@ -109,6 +109,13 @@ TEST_CASE("serve refuses what it can't serve, with a sentence and a code") {
     CHECK(Program({"serve", folder.cloud().string(), "--page", "/nonexistent"}, errors).wait() == 3);
     CHECK(Program({"serve"}, errors).wait() == 2);
     CHECK(Program({"serve", folder.cloud().string(), "--port", "70000"}, errors).wait() == 2);
+    for (const char* option :
+         {"--upstream-token-file", "--upstream-ca"}) { // though no cloud comes from elsewhere
+        INFO(option);
+        int code = Program({"serve", folder.cloud().string(), option, "/nonexistent"}, errors).wait();
+        CHECK((code == 2 || code == 3));
+        CHECK(readFile(errors).find("/nonexistent") != std::string::npos);
+    }
     TestServer other;
     CHECK(
         Program({"serve", folder.cloud().string(), "--port", std::to_string(other.port())}, errors).wait() ==
