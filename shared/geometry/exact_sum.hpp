@@ -35,6 +35,13 @@ class ExactSum {
         add(std::fma(a, b, -product)); // what the product lost
         add(product);
     }
+    // To within one unit in the last place.
+    double value() const {
+        double sum = 0;
+        for (std::size_t i = 0; i < count_; ++i)
+            sum += parts_[i];
+        return sum;
+    }
     // 1, 0 or -1.
     int sign() const {
         for (std::size_t i = count_; i-- > 0;)
