@@ -1,6 +1,8 @@
 #include "client/web/viewer.hpp"
 
+#include "client/core/camera.hpp"
 #include "client/core/json.hpp"
+#include "client/survey/measure_json.hpp"
 #include "client/web/browser_source.hpp"
 #include "client/web/host.hpp"
 
@@ -8,6 +10,8 @@
 
 #include <emscripten/heap.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace stipple::web {
@@ -150,6 +154,22 @@ namespace {
 PointIdentity identityOf(const PickHit& hit) {
     return {hit.cloud, hit.node->key, hit.point};
 }
+// What measuring from a point needs to know of its cloud.
+void addPlace(nlohmann::json& point, const CloudState& cloud, const PointIdentity& identity) {
+    if (!cloud.metadata)
+        return;
+    const CloudMetadata& metadata = *cloud.metadata;
+    const Crs& crs = metadata.crs;
+    auto list = [](Vec3d v) { return nlohmann::json{v.x, v.y, v.z}; };
+    point["crs"] = crs.name;
+    point["epsg"] = crs.epsg ? nlohmann::json(*crs.epsg) : nlohmann::json(nullptr);
+    point["unit"] = crs.unit;
+    point["unitMeters"] = crs.unitMeters;
+    point["geocentric"] = !crs.axes.empty() && crs.axes[0].direction.rfind("geocentric", 0) == 0;
+    point["scale"] = list(metadata.grid.scale);
+    point["offset"] = list(metadata.grid.offset);
+    point["spacing"] = std::ldexp(metadata.spacing, -identity.node.level);
+}
 std::string pickError(const Error& error) {
     return jsonText({{"pending", false}, {"error", error.sentence()}});
 }
@@ -170,7 +190,7 @@ nlohmann::json Viewer::pickedJson(const PickHit& hit, const PointRecord& record)
     for (const CloudState& cloud : session_->clouds())
         if (cloud.id == hit.cloud) {
             point["cloudName"] = cloud.name;
-            point["crs"] = cloud.metadata ? cloud.metadata->crs.name : "";
+            addPlace(point, cloud, identityOf(hit));
         }
     return point;
 }
@@ -202,6 +222,34 @@ std::string Viewer::takePickJson() {
             return jsonText({{"pending", false}, {"point", pickedJson(hit, *answer.record)}});
         }
     return jsonText(pending);
+}
+
+std::string Viewer::measureJson(std::string_view request) {
+    Result<nlohmann::json> parsed = parseJson(request, "measurement");
+    Result<nlohmann::json> answer = parsed.ok() ? survey::measureJson(*parsed) : parsed;
+    if (!answer.ok())
+        return jsonText({{"error", answer.error().sentence()}});
+    return jsonText({{"answer", *answer}});
+}
+
+std::string Viewer::projectJson(std::string_view positions) const {
+    Result<nlohmann::json> parsed = parseJson(positions, "positions");
+    nlohmann::json places = nlohmann::json::array();
+    if (!parsed.ok() || !parsed->is_array() || drawn_.width == 0)
+        return jsonText(places);
+    auto isNumber = [](const nlohmann::json& value) { return value.is_number(); };
+    for (const nlohmann::json& position : *parsed) {
+        if (!position.is_array() || position.size() != 3 ||
+            !std::all_of(position.begin(), position.end(), isNumber)) {
+            places.push_back(nullptr);
+            continue;
+        }
+        Vec3d world{position[0].get<double>(), position[1].get<double>(), position[2].get<double>()};
+        Vec3d pixel = projectToPixels(drawn_.view, drawn_.width, drawn_.height, world);
+        bool isBehind = drawn_.view.projection == Projection::perspective && !(pixel.z > 0);
+        places.push_back(isBehind ? nlohmann::json(nullptr) : nlohmann::json{pixel.x, pixel.y, pixel.z});
+    }
+    return jsonText(places);
 }
 
 bool Viewer::settled() const {

@@ -47,8 +47,16 @@ class Viewer {
     Status pick(double x, double y, int radius);
     // {"pending": true} while the GPU or the file has not answered; {"pending": false, "point": null} if
     // there is nothing; else "point" is the record (client/core/json.hpp) with "point", "pixelsAway",
-    // "distance", "cloudName". {"pending": false, "error": sentence} for what can't be read.
+    // "distance", "cloudName" and what measuring needs of its cloud: "crs", "epsg", "unit", "unitMeters",
+    // "geocentric", "scale", "offset", and the "spacing" of the node. {"pending": false, "error": sentence}
+    // for what can't be read.
     std::string takePickJson();
+
+    // {"answer": {…}} or {"error": sentence}, of client/survey/measure_json.hpp.
+    static std::string measureJson(std::string_view request);
+    // Where world positions [[x, y, z], …] are in the present picture: [x, y, view distance] each, in pixels
+    // from the canvas's top left; null for what is behind the camera.
+    std::string projectJson(std::string_view positions) const;
 
     // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
     // kept for drawError().

@@ -100,6 +100,14 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_take_pick() {
     return give(viewer->takePickJson());
 }
 
+// Measuring.
+EMSCRIPTEN_KEEPALIVE const char* stipple_measure(const char* json) {
+    return give(Viewer::measureJson(json));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_project(const char* json) {
+    return give(viewer->projectJson(json));
+}
+
 // Frames.
 EMSCRIPTEN_KEEPALIVE int stipple_frame() {
     return viewer->frame() ? 1 : 0;

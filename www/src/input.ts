@@ -9,8 +9,10 @@ const clickSlop = 3;
 /**
  * Pointer, wheel, touch and keys on the canvas become steps of the camera. Left drag or one finger orbits; right,
  * middle or shift drag and two fingers pan; wheel and pinch zoom to the pointer; a click asks about the point there, Escape lets go of it.
+ * With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
+    const { measuring } = model;
     const fingers = new Map<number, { x: number; y: number }>();
     /** Where the one pointer went down; none once it has moved, or another came. */
     let pressed: { x: number; y: number } | undefined;
@@ -56,10 +58,12 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     };
     canvas.addEventListener('pointerup', (event) => {
         lift(event);
-        if (pressed) void model.showPoint(pressed.x, pressed.y);
+        if (pressed && measuring.isDrawing) void measuring.click(pressed.x, pressed.y);
+        else if (pressed) void model.showPoint(pressed.x, pressed.y);
         pressed = undefined;
     });
     canvas.addEventListener('pointercancel', lift);
+    canvas.addEventListener('dblclick', () => measuring.finish());
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 
     canvas.addEventListener(
@@ -92,7 +96,11 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             '2': () => model.showView('front'),
             '3': () => model.showView('iso'),
             Home: () => model.showView('iso'),
-            Escape: () => model.forgetPoint(),
+            Escape: () => (measuring.isDrawing ? measuring.stop() : model.forgetPoint()),
+            ...(measuring.isDrawing && {
+                Enter: () => measuring.finish(),
+                Backspace: () => measuring.takeBack(),
+            }),
         };
         const action = actions[event.key];
         if (!action) return;

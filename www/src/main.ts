@@ -1,7 +1,8 @@
 import { html, render } from 'lit';
 
 import { followDrops, followInput } from './input.ts';
-import { Model, messageOf } from './model.ts';
+import { messageOf } from './messages.ts';
+import { Model } from './model.ts';
 import { listClouds, type CloudPage } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
 import type { App } from './ui/app.ts';

@@ -1,5 +1,18 @@
+import { Measuring } from './measuring/measuring.ts';
+import { messageOf } from './messages.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
-import type { CloudState, Counters, Limits, NamedView, PickedPoint, Projection, Style } from './wasm/values.ts';
+import type {
+    CloudState,
+    Counters,
+    Limits,
+    MeasureAnswer,
+    MeasureRequest,
+    NamedView,
+    PickedPoint,
+    Projection,
+    Style,
+    Vector,
+} from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /** What failed is tried again after a pause, and no arrival tells when that is over: so look now and then. */
@@ -25,6 +38,9 @@ export class Model extends EventTarget {
     picked: PickedPoint | null = null;
     /** Sentences for the person, newest last. */
     notices: string[] = [];
+
+    /** What was measured, and the tool in hand. */
+    readonly measuring = new Measuring(this);
 
     private viewer!: Viewer;
     private lastQuestion = 0;
@@ -166,6 +182,17 @@ export class Model extends EventTarget {
         this.changed();
     }
 
+    // Measuring
+
+    measure(request: MeasureRequest): MeasureAnswer {
+        return this.viewer.measure(request);
+    }
+    /** Where world positions are in the picture, in CSS pixels of the canvas; null for what is behind the camera. */
+    project(positions: Vector[]): ({ x: number; y: number } | null)[] {
+        const ratio = this.pixelRatio;
+        return this.viewer.project(positions).map((at) => at && { x: at[0] / ratio, y: at[1] / ratio });
+    }
+
     // Frames
 
     /** A frame is due. */
@@ -221,7 +248,9 @@ export class Model extends EventTarget {
     private frame(): void {
         this.frameIsDue = false;
         const start = performance.now();
-        if (this.viewer.frame() && !this.atRest && this.limits.frameMilliseconds > 0) this.timeFrame(start);
+        const drew = this.viewer.frame();
+        if (drew && !this.atRest && this.limits.frameMilliseconds > 0) this.timeFrame(start);
+        if (drew) this.dispatchEvent(new Event('frame'));
         clearTimeout(this.lookAgainTimer);
         if (this.viewer.settled()) this.settledWaiters.splice(0).forEach((resolve) => resolve());
         else this.lookAgainTimer = setTimeout(() => this.wake(), retryPauseMs);
@@ -304,8 +333,4 @@ export class Model extends EventTarget {
         });
         this.canvas.addEventListener('webglcontextrestored', () => this.act(() => this.viewer.contextRestored()));
     }
-}
-
-export function messageOf(error: unknown): string {
-    return error instanceof Error ? error.message : String(error);
 }

@@ -1,3 +1,4 @@
+import type { Measurement } from './measuring/measurement.ts';
 import type { Model } from './model.ts';
 import type { Counters, PickedPoint } from './wasm/values.ts';
 
@@ -16,6 +17,8 @@ export interface TestHook {
     setLimits(limits: object): void;
     /** The point shown at a place of the canvas, in CSS pixels; null if there is none. */
     pick(x: number, y: number, radius?: number): Promise<PickedPoint | null>;
+    /** What was measured, oldest first. */
+    measurements(): Measurement[];
     /** Draws once more and reads the canvas back: rows from the top, four bytes a pixel, as base64. */
     readPixels(): { width: number; height: number; base64: string };
 }
@@ -35,6 +38,7 @@ export function installTestHook(model: Model): void {
         setStyle: (style) => model.changeStyle(style),
         setLimits: (limits) => model.changeLimits(limits),
         pick: (x, y, radius) => model.pick(x, y, radius),
+        measurements: () => model.measuring.items,
         readPixels: () => {
             const { width, height, rgba } = model.readPixels();
             let binary = '';

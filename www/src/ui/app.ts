@@ -1,6 +1,8 @@
 import './cloud_list.ts';
 import './counters_panel.ts';
 import './look_panel.ts';
+import './measure_overlay.ts';
+import './measure_panel.ts';
 import './point_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
@@ -26,6 +28,7 @@ export class App extends ModelElement {
             :host {
                 position: fixed;
                 inset: 0;
+                isolation: isolate;
                 pointer-events: none;
                 display: grid;
                 grid-template-columns: auto 1fr auto;
@@ -33,7 +36,7 @@ export class App extends ModelElement {
                 padding: 12px;
                 gap: 12px;
             }
-            :host > * {
+            :host > :not(stipple-measure-overlay) {
                 pointer-events: auto;
             }
             .panel {
@@ -213,7 +216,8 @@ export class App extends ModelElement {
     }
 
     override render(): TemplateResult {
-        return html`${this.renderProgress()} ${this.renderControls()}
+        return html`<stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
+            ${this.renderProgress()} ${this.renderControls()}
             ${this.countersAreOpen
                 ? html`<aside class="panel counters" aria-label="Counters">
                       <stipple-counters .model=${this.model}></stipple-counters>
@@ -258,6 +262,7 @@ export class App extends ModelElement {
             </header>
             <div class="body" id="body" ?hidden=${!this.panelIsOpen}>
                 <stipple-clouds .model=${this.model}></stipple-clouds>
+                <stipple-measure .model=${this.model}></stipple-measure>
                 <stipple-look .model=${this.model}></stipple-look>
             </div>
         </section>`;

@@ -1,6 +1,6 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { messageOf } from '../model.ts';
+import { messageOf } from '../messages.ts';
 import type { CloudClass, ColourMode, Style } from '../wasm/values.ts';
 import { select } from './fields.ts';
 import { formatCompact, ModelElement } from './model_element.ts';

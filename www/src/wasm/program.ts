@@ -42,6 +42,8 @@ export interface ViewerProgram extends Program {
     _stipple_set_projection(name: Address): Address;
     _stipple_pick(x: number, y: number, radius: number): Address;
     _stipple_take_pick(): Address;
+    _stipple_measure(json: Address): Address;
+    _stipple_project(json: Address): Address;
     _stipple_frame(): number;
     _stipple_frame_took(seconds: number): void;
     _stipple_refine_at_rest(): void;

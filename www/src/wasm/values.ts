@@ -132,6 +132,40 @@ export interface PickedPoint {
     distance: number;
     cloudName: string;
     crs: string;
+    epsg: number | null;
+    /** Of the coordinates; metres in one: 0 where unknown, or an angle. */
+    unit: string;
+    unitMeters: number;
+    geocentric: boolean;
+    /** position = offset + scale × integers. */
+    scale: Vector;
+    offset: Vector;
+    /** How far apart points of its node are. */
+    spacing: number;
+}
+
+export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle';
+
+/** client/survey/measure_json.hpp. */
+export interface MeasureRequest {
+    kind: MeasureKind;
+    closed?: boolean;
+    geocentric?: boolean;
+    points: { integers: Vector; scale: Vector; offset: Vector; spacing: number }[];
+}
+
+export interface MeasuredSegment {
+    distance: number;
+    horizontal: number;
+    vertical: number;
+    azimuth: number | null;
+    gradient: number | null;
+}
+
+/** Values by name, each with its standard deviation as `±name` where it depends on the places picked. */
+export interface MeasureAnswer {
+    kind: MeasureKind;
+    [value: string]: number | null | boolean | string | Vector | MeasuredSegment[];
 }
 
 export interface PickAnswer {

@@ -4,7 +4,19 @@ import viewerUrl from '@programs/stipple_viewer.wasm?url';
 import type { Heap } from './heap.ts';
 import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
-import type { Camera, CloudState, Counters, Limits, NamedView, PickAnswer, Projection, Style } from './values.ts';
+import type {
+    Camera,
+    CloudState,
+    Counters,
+    Limits,
+    MeasureAnswer,
+    MeasureRequest,
+    NamedView,
+    PickAnswer,
+    Projection,
+    Style,
+    Vector,
+} from './values.ts';
 
 type Partially<T> = { [K in keyof T]?: T[K] extends unknown[] ? T[K] : T[K] extends object ? Partial<T[K]> : T[K] };
 export type StyleChange = Partially<Style>;
@@ -93,6 +105,23 @@ export class Viewer {
     }
     takePick(): PickAnswer {
         return this.json<PickAnswer>(this.program._stipple_take_pick());
+    }
+
+    /** client/survey/measure_json.hpp. Throws the sentence of what can't be measured. */
+    measure(request: MeasureRequest): MeasureAnswer {
+        return this.heap.lendTexts([JSON.stringify(request)], (at) => {
+            const { answer, error } = this.json<{ answer?: MeasureAnswer; error?: string }>(
+                this.program._stipple_measure(at!),
+            );
+            if (!answer) throw new Error(error);
+            return answer;
+        });
+    }
+    /** Where world positions are in the present picture, in pixels of the canvas; null for what is behind the camera. */
+    project(positions: Vector[]): (Vector | null)[] {
+        return this.heap.lendTexts([JSON.stringify(positions)], (at) =>
+            this.json<(Vector | null)[]>(this.program._stipple_project(at!)),
+        );
     }
 
     /** True if it drew. */

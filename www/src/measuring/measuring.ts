@@ -1,0 +1,142 @@
+import type { Model } from '../model.ts';
+import { messageOf } from '../messages.ts';
+import type { MeasureKind, PickedPoint } from '../wasm/values.ts';
+import { kindOf, type Measurement, obstacleOf, requestOf } from './measurement.ts';
+import type { DisplayUnit } from './units.ts';
+
+/** The measuring tools: what was measured, and the one that is being drawn. 'change' says that something did. */
+export class Measuring extends EventTarget {
+    items: Measurement[] = [];
+    unit: DisplayUnit = 'stored';
+    /** Whose points are being picked; with none yet, it is not in `items`. */
+    private drawn: Measurement | undefined;
+    private lastId = 0;
+    private readonly numbers = new Map<MeasureKind, number>();
+
+    constructor(private readonly model: Model) {
+        super();
+    }
+
+    get isDrawing(): boolean {
+        return this.drawn !== undefined;
+    }
+    get drawnKind(): MeasureKind | undefined {
+        return this.drawn?.kind;
+    }
+
+    /** Takes the tool in hand: the next clicks are points of a new measurement. */
+    start(kind: MeasureKind): void {
+        this.finish();
+        const number = (this.numbers.get(kind) ?? 0) + 1;
+        this.drawn = { id: ++this.lastId, kind, name: `${kindOf(kind).label} ${number}`, hidden: false, points: [] };
+        this.changed();
+    }
+
+    /** Takes the point shown at a place of the canvas, in CSS pixels. */
+    async click(x: number, y: number): Promise<void> {
+        const point = await this.pick(x, y);
+        if (point) this.add(point);
+    }
+
+    add(point: PickedPoint): void {
+        const item = this.drawn;
+        if (!item) return;
+        if (samePoint(item.points.at(-1), point)) return; // the second click of a double click
+        if (item.points.length === 0) {
+            this.items = [...this.items, item];
+            this.numbers.set(item.kind, (this.numbers.get(item.kind) ?? 0) + 1);
+        }
+        item.points = [...item.points, point];
+        this.measure(item);
+        if (item.points.length === kindOf(item.kind).points) this.drawn = undefined;
+        this.changed();
+    }
+
+    takeBack(): void {
+        const item = this.drawn;
+        if (!item) return;
+        item.points = item.points.slice(0, -1);
+        if (item.points.length === 0) this.items = this.items.filter((other) => other !== item);
+        this.measure(item);
+        this.changed();
+    }
+
+    /** Keeps what is drawn if it has points enough, and puts the tool away. */
+    finish(): void {
+        const item = this.drawn;
+        if (!item) return;
+        this.drawn = undefined;
+        if (item.points.length < kindOf(item.kind).least) this.items = this.items.filter((other) => other !== item);
+        this.changed();
+    }
+
+    /** Puts the tool away, and what is drawn with it. */
+    stop(): void {
+        const item = this.drawn;
+        this.drawn = undefined;
+        this.items = this.items.filter((other) => other !== item);
+        this.changed();
+    }
+
+    /** Moves a point to the one shown at a place of the canvas; nothing happens where there is none. */
+    async move(item: Measurement, index: number, x: number, y: number): Promise<void> {
+        const point = await this.pick(x, y);
+        if (!point || !this.items.includes(item) || index >= item.points.length) return;
+        item.points = item.points.map((old, at) => (at === index ? point : old));
+        this.measure(item);
+        this.changed();
+    }
+
+    rename(item: Measurement, name: string): void {
+        item.name = name.trim() || item.name;
+        this.changed();
+    }
+    setHidden(item: Measurement, hidden: boolean): void {
+        item.hidden = hidden;
+        this.changed();
+    }
+    remove(item: Measurement): void {
+        this.items = this.items.filter((other) => other !== item);
+        if (this.drawn === item) this.drawn = undefined;
+        this.changed();
+    }
+    setUnit(unit: DisplayUnit): void {
+        this.unit = unit;
+        this.changed();
+    }
+
+    private async pick(x: number, y: number): Promise<PickedPoint | null> {
+        try {
+            return await this.model.pick(x, y);
+        } catch (error) {
+            this.model.notify(messageOf(error));
+            return null;
+        }
+    }
+
+    private measure(item: Measurement): void {
+        delete item.answer;
+        delete item.error;
+        if (item.points.length < kindOf(item.kind).least) return;
+        const obstacle = obstacleOf(item);
+        try {
+            if (obstacle) item.error = obstacle;
+            else item.answer = this.model.measure(requestOf(item));
+        } catch (error) {
+            item.error = messageOf(error);
+        }
+    }
+
+    private changed(): void {
+        this.dispatchEvent(new Event('change'));
+    }
+}
+
+function samePoint(a: PickedPoint | undefined, b: PickedPoint): boolean {
+    return (
+        a !== undefined &&
+        a.point.cloud === b.point.cloud &&
+        a.point.node === b.point.node &&
+        a.point.index === b.point.index
+    );
+}

@@ -1,0 +1,183 @@
+import { css, html, svg, type SVGTemplateResult, type TemplateResult } from 'lit';
+
+import { kindOf, type Measurement } from '../measuring/measurement.ts';
+import { resultLines } from '../measuring/results.ts';
+import type { Vector } from '../wasm/values.ts';
+import { ModelElement } from './model_element.ts';
+
+type Place = { x: number; y: number };
+
+/** What was measured, over the picture: lines, handles that can be dragged to other points, values. */
+export class MeasureOverlay extends ModelElement {
+    static override styles = css`
+        :host {
+            position: fixed;
+            inset: 0;
+            pointer-events: none;
+            overflow: hidden;
+            z-index: -1; /* under the panels */
+        }
+        svg {
+            width: 100%;
+            height: 100%;
+            display: block;
+        }
+        .line {
+            fill: none;
+            stroke: var(--accent);
+            stroke-width: 2;
+            paint-order: stroke;
+        }
+        .under {
+            fill: none;
+            stroke: rgb(0 0 0 / 0.55);
+            stroke-width: 4;
+        }
+        .inside {
+            fill: var(--accent);
+            fill-opacity: 0.14;
+            stroke: none;
+        }
+        .handle {
+            fill: var(--panel-solid);
+            stroke: var(--accent);
+            stroke-width: 2;
+            pointer-events: auto;
+            cursor: move;
+            touch-action: none;
+        }
+        .drawing .handle {
+            pointer-events: none;
+        }
+        text {
+            font: 600 13px system-ui, sans-serif;
+            fill: #fff;
+            stroke: rgb(0 0 0 / 0.75);
+            stroke-width: 4;
+            paint-order: stroke;
+            text-anchor: middle;
+        }
+    `;
+
+    private readonly follow = (): void => this.requestUpdate();
+    private dragging = false;
+
+    override connectedCallback(): void {
+        super.connectedCallback();
+        this.model.measuring.addEventListener('change', this.follow);
+        this.model.addEventListener('frame', this.follow);
+    }
+    override disconnectedCallback(): void {
+        this.model.measuring.removeEventListener('change', this.follow);
+        this.model.removeEventListener('frame', this.follow);
+        super.disconnectedCallback();
+    }
+
+    override render(): TemplateResult | string {
+        const items = this.model.measuring.items.filter((item) => !item.hidden);
+        if (items.length === 0) return '';
+        const places = this.model.project(items.flatMap((item) => [...corners(item), ...circle(item)]));
+        let at = 0;
+        const next = (count: number): (Place | null)[] => places.slice(at, (at += count));
+        // While a tool is in hand, clicks are for points of the cloud, also where a handle is.
+        return html`<svg aria-hidden="true" class=${this.model.measuring.isDrawing ? 'drawing' : ''}>
+            ${items.map((item) => this.renderItem(item, next(corners(item).length), next(circle(item).length)))}
+        </svg>`;
+    }
+
+    private renderItem(item: Measurement, points: (Place | null)[], ring: (Place | null)[]): SVGTemplateResult {
+        const closed = (kindOf(item.kind).isClosed ?? false) && points.length > 2;
+        const line = ring.length > 0 ? path(ring, true) : path(points, closed);
+        return svg`<g data-kind=${item.kind}>
+            ${closed && points.every(Boolean) ? svg`<path class="inside" d=${line}></path>` : ''}
+            <path class="under" d=${line}></path>
+            <path class="line" d=${line}></path>
+            ${points.map((place, index) =>
+                place
+                    ? svg`<circle class="handle" cx=${place.x} cy=${place.y} r="5"
+                        @pointerdown=${(event: PointerEvent) => this.drag(event, item, index)}></circle>`
+                    : '',
+            )}
+            ${this.renderLabel(item, points)}
+        </g>`;
+    }
+
+    private renderLabel(item: Measurement, points: (Place | null)[]): SVGTemplateResult | string {
+        const seen = points.filter((place): place is Place => place !== null);
+        const first = resultLines(item, this.model.measuring.unit)[0];
+        if (!first || item.kind === 'point' || seen.length === 0) return '';
+        const x = seen.reduce((sum, place) => sum + place.x, 0) / seen.length;
+        const y = seen.reduce((sum, place) => sum + place.y, 0) / seen.length;
+        return svg`<text x=${x} y=${y - 10}>${first.value}</text>`;
+    }
+
+    /** The handle follows the pointer from point to point; one question at a time, the last place counts. */
+    private drag(event: PointerEvent, item: Measurement, index: number): void {
+        event.preventDefault();
+        event.stopPropagation();
+        const handle = event.currentTarget as Element;
+        const box = this.model.canvas.getBoundingClientRect();
+        let wanted: Place | undefined;
+        const ask = async (): Promise<void> => {
+            if (this.dragging) return;
+            this.dragging = true;
+            while (wanted) {
+                const { x, y } = wanted;
+                wanted = undefined;
+                await this.model.measuring.move(item, index, x, y);
+            }
+            this.dragging = false;
+        };
+        const move = (moved: PointerEvent): void => {
+            wanted = { x: moved.clientX - box.left, y: moved.clientY - box.top };
+            void ask();
+        };
+        const drop = (): void => {
+            handle.removeEventListener('pointermove', move as EventListener);
+            handle.removeEventListener('pointerup', drop);
+            handle.removeEventListener('pointercancel', drop);
+        };
+        handle.setPointerCapture(event.pointerId);
+        handle.addEventListener('pointermove', move as EventListener);
+        handle.addEventListener('pointerup', drop);
+        handle.addEventListener('pointercancel', drop);
+    }
+}
+
+function corners(item: Measurement): Vector[] {
+    return item.points.map((point) => point.position);
+}
+
+/** Places around the circle that was measured. */
+function circle(item: Measurement): Vector[] {
+    const { answer } = item;
+    if (item.kind !== 'circle' || !answer) return [];
+    const centre = answer['centre'] as Vector, normal = answer['normal'] as Vector, radius = answer['radius'] as number;
+    const first = item.points[0]!.position.map((value, axis) => (value - centre[axis]!) / radius) as Vector;
+    const second = cross(normal, first);
+    return Array.from({ length: 72 }, (_, i) => {
+        const c = radius * Math.cos((i * Math.PI) / 36), s = radius * Math.sin((i * Math.PI) / 36);
+        return centre.map((value, axis) => value + c * first[axis]! + s * second[axis]!) as Vector;
+    });
+}
+
+function cross([a, b, c]: Vector, [x, y, z]: Vector): Vector {
+    return [b * z - c * y, c * x - a * z, a * y - b * x];
+}
+
+/** Through the places, interrupted where one is behind the camera. */
+function path(places: (Place | null)[], closed: boolean): string {
+    let isOn = false;
+    const steps = places.map((place) => {
+        if (!place) {
+            isOn = false;
+            return '';
+        }
+        const step = `${isOn ? 'L' : 'M'}${place.x} ${place.y}`;
+        isOn = true;
+        return step;
+    });
+    return steps.join('') + (closed && places.every(Boolean) ? 'Z' : '');
+}
+
+customElements.define('stipple-measure-overlay', MeasureOverlay);

@@ -1,0 +1,239 @@
+import { css, html, type TemplateResult } from 'lit';
+
+import { exportFormats, exportText, type ExportFormat } from '../measuring/exports.ts';
+import { kindOf, kindsOfMeasurement, type Measurement } from '../measuring/measurement.ts';
+import type { Measuring } from '../measuring/measuring.ts';
+import { resultLines } from '../measuring/results.ts';
+import { displayUnits } from '../measuring/units.ts';
+import { select } from './fields.ts';
+import { ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+/** The measuring tools, and what was measured. */
+export class MeasurePanel extends ModelElement {
+    static override styles = [
+        controlStyles,
+        css`
+            .tools {
+                display: grid;
+                grid-template-columns: repeat(3, 1fr);
+                gap: 0.4rem;
+            }
+            .tools button {
+                padding: 0 0.2rem;
+                font-size: 0.9rem;
+            }
+            .tools button[aria-pressed='true'] {
+                background: var(--accent);
+                color: var(--accent-ink);
+            }
+            .hint {
+                margin: 0.6rem 0 0;
+                font-size: 0.82rem;
+                color: var(--muted);
+            }
+            ul {
+                list-style: none;
+                margin: 0.6rem 0 0;
+                padding: 0;
+                display: grid;
+                gap: 0.6rem;
+            }
+            li {
+                border: 1px solid var(--line);
+                border-radius: 8px;
+                padding: 0.4rem 0.5rem 0.5rem 0.6rem;
+            }
+            li.hidden dl {
+                opacity: 0.5;
+            }
+            .head {
+                display: grid;
+                grid-template-columns: 1fr auto auto auto;
+                align-items: center;
+            }
+            .head input {
+                font: inherit;
+                font-weight: 600;
+                color: inherit;
+                background: none;
+                border: 0;
+                border-radius: 4px;
+                padding: 0.1rem 0.2rem;
+                min-width: 0;
+            }
+            .head button {
+                background: none;
+                border-color: transparent;
+                color: var(--muted);
+                min-height: 1.7rem;
+                padding: 0 0.35rem;
+                font-size: 0.8rem;
+            }
+            dl {
+                display: grid;
+                grid-template-columns: auto 1fr;
+                gap: 0.1rem 0.8rem;
+                margin: 0.2rem 0 0;
+                font-size: 0.82rem;
+                user-select: text;
+            }
+            dt {
+                color: var(--muted);
+            }
+            dd {
+                margin: 0;
+                text-align: right;
+                font-variant-numeric: tabular-nums;
+            }
+            dd small {
+                color: var(--muted);
+            }
+            .error {
+                margin: 0.3rem 0 0;
+                font-size: 0.82rem;
+                color: var(--danger);
+            }
+            .files {
+                display: flex;
+                flex-wrap: wrap;
+                gap: 0.4rem;
+                margin-top: 0.6rem;
+            }
+        `,
+    ];
+
+    private readonly follow = (): void => this.requestUpdate();
+
+    override connectedCallback(): void {
+        super.connectedCallback();
+        this.measuring.addEventListener('change', this.follow);
+    }
+    override disconnectedCallback(): void {
+        this.measuring.removeEventListener('change', this.follow);
+        super.disconnectedCallback();
+    }
+
+    private get measuring(): Measuring {
+        return this.model.measuring;
+    }
+
+    override render(): TemplateResult {
+        const { measuring } = this;
+        return html`<fieldset>
+            <legend>Measure</legend>
+            <div class="tools">
+                ${kindsOfMeasurement.map(
+                    ({ kind, label }) =>
+                        html`<button
+                            aria-pressed=${measuring.drawnKind === kind}
+                            @click=${() => this.take(kind)}
+                        >
+                            ${label}
+                        </button>`,
+                )}
+            </div>
+            ${this.renderHint()}
+            ${measuring.items.length > 0
+                ? html`${select('Unit', measuring.unit, displayUnits, (unit) => measuring.setUnit(unit))}
+                      <ul>
+                          ${measuring.items.map((item) => this.renderItem(item))}
+                      </ul>
+                      <div class="files">
+                          ${exportFormats.map(
+                              ({ format, label }) =>
+                                  html`<button @click=${() => this.save(format)}>${label}</button>`,
+                          )}
+                      </div>`
+                : ''}
+        </fieldset>`;
+    }
+
+    private take(kind: Measurement['kind']): void {
+        if (this.measuring.drawnKind === kind) this.measuring.finish();
+        else this.measuring.start(kind);
+        this.model.canvas.focus({ preventScroll: true });
+    }
+
+    private renderHint(): TemplateResult | string {
+        const kind = this.measuring.drawnKind;
+        if (!kind) return '';
+        const { points } = kindOf(kind);
+        return html`<p class="hint" role="status">
+            ${points === undefined
+                ? 'Click points; a double click or Enter ends, Backspace takes the last one back, Escape gives up.'
+                : `Click ${points === 1 ? 'a point' : `${points} points${kind === 'angle' ? ', the corner second' : ''}`}; Escape gives up.`}
+        </p>`;
+    }
+
+    private renderItem(item: Measurement): TemplateResult {
+        const { measuring } = this;
+        const lines = resultLines(item, measuring.unit);
+        return html`<li class=${item.hidden ? 'hidden' : ''} data-measurement=${item.kind}>
+            <div class="head">
+                <input
+                    aria-label="Name"
+                    .value=${item.name}
+                    @change=${(event: Event) => measuring.rename(item, (event.target as HTMLInputElement).value)}
+                />
+                <button
+                    aria-pressed=${item.hidden}
+                    aria-label=${`Hide ${item.name}`}
+                    title="Hide"
+                    @click=${() => measuring.setHidden(item, !item.hidden)}
+                >
+                    ${item.hidden ? '◌' : '●'}
+                </button>
+                <button
+                    aria-label=${`Copy ${item.name}`}
+                    @click=${() => void this.copy(item)}
+                >
+                    Copy
+                </button>
+                <button
+                    aria-label=${`Delete ${item.name}`}
+                    title="Delete"
+                    @click=${() => measuring.remove(item)}
+                >
+                    ✕
+                </button>
+            </div>
+            ${item.error ? html`<p class="error" role="alert">${item.error}</p>` : ''}
+            <dl>
+                ${lines.map(
+                    ({ name, field, value, deviation }) =>
+                        html`<dt>${name}</dt>
+                            <dd data-field=${field}>
+                                ${value} ${deviation ? html`<small title="Standard deviation">± ${deviation}</small>` : ''}
+                            </dd>`,
+                )}
+            </dl>
+            ${item.answer?.['crosses'] === true
+                ? html`<p class="error">Its edges cross: the areas of its loops are added and taken away.</p>`
+                : ''}
+        </li>`;
+    }
+
+    private async copy(item: Measurement): Promise<void> {
+        const lines = resultLines(item, this.measuring.unit).map(
+            ({ name, value, deviation }) => `${name}\t${value}${deviation ? `\t± ${deviation}` : ''}`,
+        );
+        try {
+            await navigator.clipboard.writeText([item.name, ...lines].join('\n'));
+        } catch {
+            this.model.notify('The browser does not let the page copy; select the text and copy it by hand.');
+        }
+    }
+
+    private save(format: ExportFormat): void {
+        const { type } = exportFormats.find((known) => known.format === format)!;
+        const address = URL.createObjectURL(new Blob([exportText(this.measuring.items, format)], { type }));
+        const link = document.createElement('a');
+        link.href = address;
+        link.download = `measurements.${format}`;
+        link.click();
+        setTimeout(() => URL.revokeObjectURL(address), 10_000);
+    }
+}
+
+customElements.define('stipple-measure', MeasurePanel);
