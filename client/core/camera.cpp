@@ -146,15 +146,11 @@ double unitsPerPixel(const Camera& camera, int height) {
     return 2 * distance * std::tan(camera.fovYDegrees * radiansPerDegree / 2) / height;
 }
 
-Camera namedCamera(NamedView name, const BoxD& content, double aspect, Projection projection) {
-    Camera camera;
-    camera.projection = projection;
-    if (content.empty())
-        return camera;
-    Vec3d forward = name == NamedView::top     ? Vec3d{0, 0, -1}
-                    : name == NamedView::front ? Vec3d{0, 1, 0}
-                                               : unit(Vec3d{1, 1, -1});
-    Axes axes = axesFor(forward, camera.up);
+Camera fittedCamera(const Camera& looking, const BoxD& content, double aspect) {
+    if (content.empty() || !isUsable(looking))
+        return looking;
+    Camera camera = looking;
+    Axes axes = axesOf(camera);
     Vec3d centre = content.min + (content.max - content.min) * 0.5;
     double tanHalfFov = std::tan(camera.fovYDegrees * radiansPerDegree / 2);
 
@@ -162,7 +158,7 @@ Camera namedCamera(NamedView name, const BoxD& content, double aspect, Projectio
     std::array<Vec3d, 8> corners = cornersOf(content); // in the camera's axes, from the centre
     for (Vec3d& corner : corners) {
         Vec3d relative = corner - centre;
-        corner = {dot(relative, axes.right), dot(relative, axes.up), dot(relative, forward)};
+        corner = {dot(relative, axes.right), dot(relative, axes.up), dot(relative, axes.forward)};
         halfHeight = std::max({halfHeight, std::abs(corner.y), std::abs(corner.x) / aspect});
         radius = std::max(radius, length(relative));
     }
@@ -171,14 +167,28 @@ Camera namedCamera(NamedView name, const BoxD& content, double aspect, Projectio
     camera.orthoHeight = 2 * halfHeight;
 
     Vec3d eye{0, 0, -1}; // a single point: any distance shows it
-    if (projection == Projection::orthographic)
+    if (camera.projection == Projection::orthographic)
         eye.z = -(halfHeight / tanHalfFov + radius);
     else if (radius > 0)
         eye = fittedEye(corners, tanHalfFov * aspect * filledPart, tanHalfFov * filledPart, radius * 1e-3);
     // The target stays at the centre's depth, so that turning goes around the content.
     camera.target = centre + axes.right * eye.x + axes.up * eye.y;
-    camera.position = camera.target + forward * eye.z;
+    camera.position = camera.target + axes.forward * eye.z;
     return camera;
+}
+
+Camera namedCamera(NamedView name, const BoxD& content, double aspect, Projection projection) {
+    Camera camera;
+    camera.projection = projection;
+    if (content.empty())
+        return camera;
+    Vec3d forward = name == NamedView::top     ? Vec3d{0, 0, -1}
+                    : name == NamedView::front ? Vec3d{0, 1, 0}
+                    : name == NamedView::side  ? Vec3d{-1, 0, 0}
+                                               : Vec3d{1, 1, -1};
+    camera.position = {0, 0, 0};
+    camera.target = forward;
+    return fittedCamera(camera, content, aspect);
 }
 
 Camera orbit(const Camera& camera, double dx, double dy, int height) {

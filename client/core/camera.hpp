@@ -35,10 +35,14 @@ Vec3d projectToPixels(const ViewTransform& view, int width, int height, Vec3d wo
 // World units in one pixel at the depth of the camera's target.
 double unitsPerPixel(const Camera& camera, int height);
 
-enum class NamedView { top, front, iso };
-// A camera that shows all of `content` from that side: `top` looks down with +y up, `front` looks along +y,
-// `iso` along (1, 1, -1). The corners of `content` fill the picture's width or height but for a margin of a
-// fiftieth at each side, and are centred in both. `aspect` = width / height.
+// The camera that looks the same way and shows all of `content` (empty: the same camera). The corners of
+// `content` fill the picture's width or height but for a margin of a fiftieth at each side, and are centred
+// in both. `aspect` = width / height.
+Camera fittedCamera(const Camera& looking, const BoxD& content, double aspect);
+
+enum class NamedView { top, front, side, iso };
+// The fitted camera from that side: `top` looks down with +y up, `front` looks along +y, `side` along -x,
+// `iso` along (1, 1, -1).
 Camera namedCamera(NamedView view, const BoxD& content, double aspect,
                    Projection projection = Projection::perspective);
 

@@ -19,9 +19,10 @@ constexpr Names<Projection, 2> projections{{
     {"perspective", Projection::perspective},
     {"orthographic", Projection::orthographic},
 }};
-constexpr Names<NamedView, 3> namedViews{{
+constexpr Names<NamedView, 4> namedViews{{
     {"top", NamedView::top},
     {"front", NamedView::front},
+    {"side", NamedView::side},
     {"iso", NamedView::iso},
 }};
 constexpr Names<PointSizeMode, 4> sizeModes{{

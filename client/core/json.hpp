@@ -34,7 +34,7 @@ std::string jsonText(const nlohmann::json& value);
 Result<Camera> cameraFromJson(std::string_view text, const Camera& base = {});
 Result<Style> styleFromJson(std::string_view text, const Style& base = {});
 Result<SessionLimits> limitsFromJson(std::string_view text, const SessionLimits& base = {});
-std::optional<NamedView> namedViewFromName(std::string_view name); // "top", "front", "iso"
+std::optional<NamedView> namedViewFromName(std::string_view name); // "top", "front", "side", "iso"
 
 nlohmann::json toJson(const Camera& camera);
 nlohmann::json toJson(const Style& style);

@@ -28,7 +28,7 @@ Result<Camera> cameraOf(const PictureRequest& request, const BoxD& content) {
         return namedCamera(*named, content, aspect, projection);
     if (request.view.find('{') == std::string::npos)
         return Error{ErrorCode::invalidArgument, cat("there is no view '", request.view, "'"), "--view",
-                     "choose top, front or iso, or give a camera as JSON"};
+                     "choose top, front, side or iso, or give a camera as JSON"};
     STIPPLE_TRY(json, parseJson(request.view, "--view"));
     STIPPLE_TRY(camera, cameraFromJson(json, namedCamera(NamedView::iso, content, aspect, projection)));
     if (request.projection)

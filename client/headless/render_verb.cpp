@@ -143,7 +143,7 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
                      "there, or next to it, with all its attributes, as JSON");
     verb->add_option(
             "--view", options->request.view,
-            "top, front, iso, or a camera as JSON: {\"position\": [x, y, z], \"target\": [x, y, z], …}")
+            "top, front, side, iso, or a camera as JSON: {\"position\": [x, y, z], \"target\": [x, y, z], …}")
         ->capture_default_str();
     verb->add_option("--size", options->size, "Width and height in pixels")->capture_default_str();
     verb->add_option("--budget", options->request.limits.pointBudget, "Points drawn at most")

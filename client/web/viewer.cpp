@@ -2,6 +2,7 @@
 
 #include "client/core/camera.hpp"
 #include "client/core/json.hpp"
+#include "client/core/point_query.hpp"
 #include "client/survey/measure_json.hpp"
 #include "client/web/browser_source.hpp"
 #include "client/web/host.hpp"
@@ -110,10 +111,63 @@ void Viewer::zoom(double factor, double x, double y) {
     session_->setCamera(zoomTo(session_->camera(), factor, x, y, width_, height_));
 }
 
+void Viewer::orbitAbout(Vec3d pivot, double dx, double dy) {
+    session_->setCamera(stipple::orbitAbout(session_->camera(), pivot, dx, dy, height_));
+}
+void Viewer::dragGround(Vec3d grabbed, double x, double y) {
+    session_->setCamera(stipple::dragGround(session_->camera(), grabbed, x, y, width_, height_));
+}
+void Viewer::dragAtDepth(Vec3d grabbed, double x, double y) {
+    session_->setCamera(stipple::dragAtDepth(session_->camera(), grabbed, x, y, width_, height_));
+}
+void Viewer::zoomToPoint(Vec3d point, double factor) {
+    session_->setCamera(stipple::zoomToPoint(session_->camera(), point, factor));
+}
+void Viewer::lookAround(double dx, double dy) {
+    session_->setCamera(stipple::lookAround(session_->camera(), dx, dy, height_));
+}
+void Viewer::walk(const Walk& step) {
+    session_->setCamera(stipple::walk(session_->camera(), step));
+}
+
+double Viewer::begin(const Camera& destination) {
+    pendingView_.reset();
+    flight_.emplace(session_->camera(), destination);
+    flown_ = session_->camera();
+    return flight_->length();
+}
+
+Result<double> Viewer::flyToCamera(std::string_view json) {
+    STIPPLE_TRY(camera, cameraFromJson(json, session_->camera()));
+    return begin(camera);
+}
+double Viewer::flyToPoint(Vec3d point, double part) {
+    return begin(facing(session_->camera(), point, part));
+}
+double Viewer::flyToCloud(CloudId id) {
+    BoxD content = session_->contentBounds();
+    for (const CloudState& cloud : session_->clouds())
+        if (cloud.id == id && cloud.metadata)
+            content = cloud.metadata->worldBounds();
+    return content.empty() ? 0 : begin(fittedCamera(session_->camera(), content, aspect()));
+}
+
+bool Viewer::fly(double t) {
+    if (!flight_ || session_->camera() != flown_) {
+        flight_.reset();
+        return false;
+    }
+    session_->setCamera(flight_->at(t));
+    flown_ = session_->camera();
+    if (t >= 1)
+        flight_.reset();
+    return true;
+}
+
 Status Viewer::showView(const std::string& name) {
     pendingView_ = namedViewFromName(name);
     if (!pendingView_)
-        return Error{ErrorCode::invalidArgument, "the views are top, front and iso", name, ""};
+        return Error{ErrorCode::invalidArgument, "the views are top, front, side and iso", name, ""};
     applyPendingView();
     return {};
 }
@@ -250,6 +304,26 @@ std::string Viewer::projectJson(std::string_view positions) const {
         places.push_back(isBehind ? nlohmann::json(nullptr) : nlohmann::json{pixel.x, pixel.y, pixel.z});
     }
     return jsonText(places);
+}
+
+std::string Viewer::takePlaceJson() {
+    const nlohmann::json pending{{"pending", true}}, nothing{{"pending", false}, {"place", nullptr}};
+    if (!renderer_ || !renderer_->pickPending())
+        return jsonText(nothing);
+    auto answer = renderer_->takePick();
+    if (!answer.ok())
+        return pickError(answer.error());
+    if (!*answer)
+        return jsonText(pending);
+    if (!(*answer)->hit)
+        return jsonText(nothing);
+    const PickHit& hit = *(*answer)->hit;
+    for (const CloudState& cloud : session_->clouds())
+        if (cloud.id == hit.cloud && cloud.metadata) {
+            Vec3d place = positionRecord(*cloud.metadata, *hit.node, hit.point).position;
+            return jsonText({{"pending", false}, {"place", {place.x, place.y, place.z}}});
+        }
+    return jsonText(nothing);
 }
 
 bool Viewer::settled() const {

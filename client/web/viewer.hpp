@@ -2,6 +2,7 @@
 // page calls frame() when it was woken or changed something, never otherwise.
 #pragma once
 
+#include "client/core/navigation.hpp"
 #include "client/core/view_session.hpp"
 #include "client/render/gles_renderer.hpp"
 #include "client/web/worker_decoder.hpp"
@@ -38,6 +39,22 @@ class Viewer {
     void orbit(double dx, double dy);
     void pan(double dx, double dy);
     void zoom(double factor, double x, double y);
+    // Steps of client/core/navigation.hpp.
+    void orbitAbout(Vec3d pivot, double dx, double dy);
+    void dragGround(Vec3d grabbed, double x, double y);
+    void dragAtDepth(Vec3d grabbed, double x, double y);
+    void zoomToPoint(Vec3d point, double factor);
+    void lookAround(double dx, double dy);
+    void walk(const Walk& step);
+    // Begins a flight: to a camera, to where `point` is in the middle at `part` of the distance, to where all
+    // of a cloud shows (0: of all). Its length; 0: there is none to fly.
+    Result<double> flyToCamera(std::string_view json);
+    double flyToPoint(Vec3d point, double part);
+    double flyToCloud(CloudId cloud);
+    // Goes to t (0..1) of it; at 1 it is over. False if no flight is under way: another step of the camera
+    // ends it.
+    bool fly(double t);
+
     // Shows everything from a named side; remembered until there is something to show.
     Status showView(const std::string& name);
     Status setProjection(const std::string& name);
@@ -51,6 +68,9 @@ class Viewer {
     // "geocentric", "scale", "offset", and the "spacing" of the node. {"pending": false, "error": sentence}
     // for what can't be read.
     std::string takePickJson();
+    // The same question, answered by the point's place alone, before anything is read: {"pending": …,
+    // "place": [x, y, z] or null}.
+    std::string takePlaceJson();
 
     // {"answer": {…}} or {"error": sentence}, of client/survey/measure_json.hpp.
     static std::string measureJson(std::string_view request);
@@ -86,6 +106,7 @@ class Viewer {
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
     bool pendingViewIsDue() const { return pendingView_ && !session_->contentBounds().empty(); }
     void applyPendingView();
+    double begin(const Camera& destination);
 
     std::unique_ptr<WorkerDecoder> decoder_; // outlives the session
     std::unique_ptr<ViewSession> session_;
@@ -96,6 +117,8 @@ class Viewer {
     bool drawAgain_ = false;
     std::optional<Error> drawError_;
     std::optional<PickHit> picked_; // whose values are on their way
+    std::optional<Flight> flight_;
+    Camera flown_; // where the flight had come to
 };
 
 } // namespace stipple::web

@@ -85,6 +85,37 @@ EMSCRIPTEN_KEEPALIVE void stipple_pan(double dx, double dy) {
 EMSCRIPTEN_KEEPALIVE void stipple_zoom(double factor, double x, double y) {
     viewer->zoom(factor, x, y);
 }
+EMSCRIPTEN_KEEPALIVE void stipple_orbit_about(double x, double y, double z, double dx, double dy) {
+    viewer->orbitAbout({x, y, z}, dx, dy);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_drag_ground(double x, double y, double z, double toX, double toY) {
+    viewer->dragGround({x, y, z}, toX, toY);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_drag_at_depth(double x, double y, double z, double toX, double toY) {
+    viewer->dragAtDepth({x, y, z}, toX, toY);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_zoom_to_point(double x, double y, double z, double factor) {
+    viewer->zoomToPoint({x, y, z}, factor);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_look_around(double dx, double dy) {
+    viewer->lookAround(dx, dy);
+}
+EMSCRIPTEN_KEEPALIVE void stipple_walk(double forward, double right, double up, int level) {
+    viewer->walk({forward, right, up, level != 0});
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_fly_to_camera(const char* json) {
+    Result<double> length = viewer->flyToCamera(json);
+    return give(length.ok() ? std::string() : length.error().sentence());
+}
+EMSCRIPTEN_KEEPALIVE double stipple_fly_to_point(double x, double y, double z, double part) {
+    return viewer->flyToPoint({x, y, z}, part);
+}
+EMSCRIPTEN_KEEPALIVE double stipple_fly_to_cloud(std::uint32_t id) {
+    return viewer->flyToCloud(id);
+}
+EMSCRIPTEN_KEEPALIVE int stipple_fly(double t) {
+    return viewer->fly(t) ? 1 : 0;
+}
 EMSCRIPTEN_KEEPALIVE const char* stipple_show_view(const char* name) {
     return give(viewer->showView(name));
 }
@@ -98,6 +129,9 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_pick(double x, double y, int radius) {
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_take_pick() {
     return give(viewer->takePickJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_take_place() {
+    return give(viewer->takePlaceJson());
 }
 
 // Measuring.

@@ -7,12 +7,13 @@ const keyZoom = 0.8;
 const clickSlop = 3;
 
 /**
- * Pointer, wheel, touch and keys on the canvas become steps of the camera. Left drag or one finger orbits; right,
- * middle or shift drag and two fingers pan; wheel and pinch zoom to the pointer; a click asks about the point there, Escape lets go of it.
+ * Pointer, wheel, touch and keys on the canvas become steps of the camera (navigation/navigator.ts). Left drag or one finger turns, or
+ * moves the ground; right, middle or shift drag does the other; two fingers pan; wheel and pinch zoom to the pointer; a double click flies
+ * to the point there, F to all, U goes back and shift U forth; a click asks about the point, Escape lets go of it.
  * With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
-    const { measuring } = model;
+    const { measuring, navigator } = model;
     const fingers = new Map<number, { x: number; y: number }>();
     /** Where the one pointer went down; none once it has moved, or another came. */
     let pressed: { x: number; y: number } | undefined;
@@ -31,13 +32,15 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         canvas.focus({ preventScroll: true });
         fingers.set(event.pointerId, place(event));
         pressed = fingers.size === 1 && event.button === 0 ? place(event) : undefined;
+        if (fingers.size === 1) navigator.press(place(event), event.shiftKey || event.button !== 0);
         event.preventDefault();
     });
 
     canvas.addEventListener('pointermove', (event) => {
         const from = fingers.get(event.pointerId);
-        if (!from) return;
         const to = place(event);
+        navigator.hover(to);
+        if (!from) return;
         if (pressed && Math.hypot(to.x - pressed.x, to.y - pressed.y) > clickSlop) pressed = undefined;
         if (fingers.size === 2) {
             const before = pinch();
@@ -48,9 +51,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             return;
         }
         fingers.set(event.pointerId, to);
-        const pans = event.shiftKey || (event.buttons & 1) === 0;
-        if (pans) model.pan(to.x - from.x, to.y - from.y);
-        else model.orbit(to.x - from.x, to.y - from.y);
+        navigator.drag(from, to, event.shiftKey || (event.buttons & 1) === 0);
     });
 
     const lift = (event: PointerEvent): void => {
@@ -63,7 +64,10 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         pressed = undefined;
     });
     canvas.addEventListener('pointercancel', lift);
-    canvas.addEventListener('dblclick', () => measuring.finish());
+    canvas.addEventListener('dblclick', (event) => {
+        if (measuring.isDrawing) measuring.finish();
+        else void navigator.flyTo({ x: event.offsetX, y: event.offsetY });
+    });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
 
     canvas.addEventListener(
@@ -73,13 +77,14 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             // Lines and pages as browsers report them, in pixels; a pinch on a touch pad comes with ctrlKey.
             const pixels = event.deltaY * [1, 16, 400][event.deltaMode]! * (event.ctrlKey ? 5 : 1);
             const { x, y } = place(event);
-            model.zoom(Math.exp(Math.max(-400, Math.min(400, pixels)) * 0.0015), x, y);
+            navigator.wheel(Math.exp(Math.max(-400, Math.min(400, pixels)) * 0.0015), { x, y });
         },
         { passive: false },
     );
 
     canvas.addEventListener('keydown', (event) => {
         if (event.ctrlKey || event.altKey || event.metaKey) return;
+        if (navigator.keyDown(event.key)) return event.preventDefault();
         const middle = { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
         const move = event.shiftKey
             ? (dx: number, dy: number) => model.pan(dx, dy)
@@ -95,7 +100,11 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             '1': () => model.showView('top'),
             '2': () => model.showView('front'),
             '3': () => model.showView('iso'),
+            '4': () => model.showView('side'),
             Home: () => model.showView('iso'),
+            f: () => void model.flyToCloud(),
+            u: () => navigator.back(),
+            U: () => navigator.forward(),
             Escape: () => (measuring.isDrawing ? measuring.stop() : model.forgetPoint()),
             ...(measuring.isDrawing && {
                 Enter: () => measuring.finish(),
@@ -107,6 +116,8 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         event.preventDefault();
         action();
     });
+    canvas.addEventListener('keyup', (event) => navigator.keyUp(event.key));
+    canvas.addEventListener('blur', () => navigator.letGo());
 }
 
 /** Files dropped anywhere on the page are opened. `hover` says whether one is held over it. */

@@ -15,7 +15,7 @@ async function start(): Promise<void> {
     canvas.tabIndex = 0;
     canvas.setAttribute(
         'aria-label',
-        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2 and 3 show top, front and iso.',
+        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
     );
     document.body.append(canvas);
 

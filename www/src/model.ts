@@ -1,7 +1,9 @@
 import { Measuring } from './measuring/measuring.ts';
 import { messageOf } from './messages.ts';
+import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
 import type {
+    Camera,
     CloudState,
     Counters,
     Limits,
@@ -19,6 +21,10 @@ import { type StyleChange, Viewer } from './wasm/viewer.ts';
 const retryPauseMs = 200;
 /** So long after the last frame the camera is at rest. */
 const restPauseMs = 250;
+/** A camera that has rested so long can be gone back to. */
+const rememberPauseMs = 500;
+/** How long a flight takes. */
+const flightMs = 800;
 
 /**
  * What the page shows and the elements change: the viewer's state as last read, and the frame loop. The loop
@@ -39,6 +45,8 @@ export class Model extends EventTarget {
     /** Sentences for the person, newest last. */
     notices: string[] = [];
 
+    /** How pointer and keys move the camera. */
+    readonly navigator = new Navigator(this);
     /** What was measured, and the tool in hand. */
     readonly measuring = new Measuring(this);
 
@@ -48,6 +56,7 @@ export class Model extends EventTarget {
     private reportIsDue = false;
     /** The camera has not moved for a while. */
     private atRest = true;
+    private rememberTimer: ReturnType<typeof setTimeout> | undefined;
     private restTimer: ReturnType<typeof setTimeout> | undefined;
     private lookAgainTimer: ReturnType<typeof setTimeout> | undefined;
     private settledWaiters: (() => void)[] = [];
@@ -125,33 +134,95 @@ export class Model extends EventTarget {
     changeCamera(change: object): void {
         this.atRest = false;
         this.act(() => this.viewer.setCamera(change));
+        this.rememberSoon();
     }
     showView(view: NamedView): void {
         this.act(() => this.viewer.showView(view));
+        this.rememberSoon();
     }
     setProjection(projection: Projection): void {
         this.act(() => this.viewer.setProjection(projection));
+        this.rememberSoon();
     }
 
     // Steps of the camera, in CSS pixels of the canvas.
 
     orbit(dx: number, dy: number): void {
-        this.atRest = false;
-        this.viewer.orbit(dx * this.pixelRatio, dy * this.pixelRatio);
-        this.wake();
+        this.step(() => this.viewer.orbit(dx * this.pixelRatio, dy * this.pixelRatio));
     }
     pan(dx: number, dy: number): void {
-        this.atRest = false;
-        this.viewer.pan(dx * this.pixelRatio, dy * this.pixelRatio);
-        this.wake();
+        this.step(() => this.viewer.pan(dx * this.pixelRatio, dy * this.pixelRatio));
     }
     zoom(factor: number, x: number, y: number): void {
-        this.atRest = false;
-        this.viewer.zoom(factor, x * this.pixelRatio, y * this.pixelRatio);
-        this.wake();
+        this.step(() => this.viewer.zoom(factor, x * this.pixelRatio, y * this.pixelRatio));
+    }
+
+    orbitAbout(pivot: Vector, dx: number, dy: number): void {
+        this.step(() => this.viewer.orbitAbout(pivot, dx * this.pixelRatio, dy * this.pixelRatio));
+    }
+    dragGround(grabbed: Vector, x: number, y: number): void {
+        this.step(() => this.viewer.dragGround(grabbed, x * this.pixelRatio, y * this.pixelRatio));
+    }
+    dragAtDepth(grabbed: Vector, x: number, y: number): void {
+        this.step(() => this.viewer.dragAtDepth(grabbed, x * this.pixelRatio, y * this.pixelRatio));
+    }
+    zoomToPoint(point: Vector, factor: number): void {
+        this.step(() => this.viewer.zoomToPoint(point, factor));
+    }
+    lookAround(dx: number, dy: number): void {
+        this.step(() => this.viewer.lookAround(dx * this.pixelRatio, dy * this.pixelRatio));
+    }
+    /** World units; `level`: forward along the ground. */
+    walk(forward: number, right: number, up: number, level: boolean): void {
+        this.step(() => this.viewer.walk(forward, right, up, level));
+    }
+
+    setNavigation(mode: NavigationMode): void {
+        this.navigator.mode = mode;
+        this.changed();
+    }
+
+    // Flights
+
+    /** To where the point is in the middle, at a part of the distance. */
+    flyToPoint(point: Vector, part: number): Promise<void> {
+        return this.fly(this.viewer.flyToPoint(point, part));
+    }
+    /** To where all of the cloud shows; of all clouds without an id. */
+    flyToCloud(id = 0): Promise<void> {
+        return this.fly(this.viewer.flyToCloud(id));
+    }
+    flyToCamera(camera: object): Promise<void> {
+        this.viewer.flyToCamera(camera);
+        return this.fly(1);
+    }
+
+    private async fly(length: number): Promise<void> {
+        if (length === 0) return;
+        const start = performance.now();
+        const duration = matchMedia('(prefers-reduced-motion: reduce)').matches ? 0 : flightMs;
+        for (let t = 0, goesOn = true; goesOn && t < 1;) {
+            const now = await new Promise<number>((resolve) => requestAnimationFrame(resolve));
+            t = duration === 0 ? 1 : Math.min(1, Math.max(0, now - start) / duration);
+            this.step(() => (goesOn = this.viewer.fly(t)));
+        }
     }
 
     // What is under the pointer
+
+    /** The place shown there, in world coordinates, without anything being read; null if there is none. */
+    async place(x: number, y: number, radius = 8): Promise<Vector | null> {
+        const ratio = this.pixelRatio;
+        const question = ++this.lastQuestion;
+        this.viewer.pick(x * ratio, y * ratio, Math.round(radius * ratio));
+        for (;;) {
+            await new Promise((resolve) => requestAnimationFrame(resolve));
+            if (question !== this.lastQuestion) return null;
+            const answer = this.viewer.takePlace();
+            if (answer.error !== undefined) throw new Error(answer.error);
+            if (!answer.pending) return answer.place ?? null;
+        }
+    }
 
     /** The point shown at a place of the canvas (CSS pixels), with all its attributes; null if there is none. */
     async pick(x: number, y: number, radius = 8): Promise<PickedPoint | null> {
@@ -210,7 +281,7 @@ export class Model extends EventTarget {
         });
     }
 
-    readCamera(): object {
+    readCamera(): Camera {
         return this.viewer.camera();
     }
     readCounters(): Counters {
@@ -299,6 +370,23 @@ export class Model extends EventTarget {
             this.toldErrors.add(sentence);
             this.notify(sentence);
         }
+    }
+
+    /** A step of the camera. */
+    private step(change: () => void): void {
+        this.atRest = false;
+        change();
+        this.wake();
+        this.rememberSoon();
+    }
+
+    /** Once the camera has rested for a while, it can be gone back to. */
+    private rememberSoon(): void {
+        clearTimeout(this.rememberTimer);
+        this.rememberTimer = setTimeout(() => {
+            this.navigator.history.rest(this.viewer.camera());
+            this.changed();
+        }, rememberPauseMs);
     }
 
     private act(change: () => void): void {

@@ -42,6 +42,18 @@ export class CloudList extends ModelElement {
             .name {
                 overflow-wrap: anywhere;
             }
+            button.name {
+                display: block;
+                width: 100%;
+                min-height: 0;
+                padding: 0;
+                border: 0;
+                background: none;
+                text-align: left;
+            }
+            button.name:hover {
+                text-decoration: underline;
+            }
             small {
                 display: block;
                 color: var(--muted);
@@ -112,7 +124,9 @@ export class CloudList extends ModelElement {
                     this.model.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
             />
             <div>
-                <span class="name">${cloud.name}</span>
+                <button class="name" title="Show all of it" @click=${() => void this.model.flyToCloud(cloud.id)}>
+                    ${cloud.name}
+                </button>
                 ${cloud.stage === 'failed'
                     ? html`<small>${cloud.error?.sentence}</small>`
                     : html`<small title=${cloud.crs ?? ''}>${this.describe(cloud)}</small>`}

@@ -20,8 +20,16 @@ export class LookPanel extends ModelElement {
             }
             .views {
                 display: grid;
-                grid-template-columns: repeat(3, 1fr);
+                grid-template-columns: repeat(4, 1fr);
                 gap: 0.4rem;
+            }
+            .hint {
+                margin: 0.4rem 0 0;
+                font-size: 0.82rem;
+                color: var(--muted);
+            }
+            .views button {
+                padding: 0 0.2rem;
             }
         `,
     ];
@@ -37,8 +45,38 @@ export class LookPanel extends ModelElement {
             <div class="views">
                 <button @click=${() => model.showView('top')}>Top</button>
                 <button @click=${() => model.showView('front')}>Front</button>
+                <button @click=${() => model.showView('side')}>Side</button>
                 <button @click=${() => model.showView('iso')}>Iso</button>
+                <button title="Show all (F)" @click=${() => void model.flyToCloud()}>All</button>
+                <button
+                    title="Where the camera was before (U)"
+                    ?disabled=${!model.navigator.history.canGoBack}
+                    @click=${() => model.navigator.back()}
+                >
+                    Back
+                </button>
+                <button
+                    title="Forth again (shift U)"
+                    ?disabled=${!model.navigator.history.canGoForward}
+                    @click=${() => model.navigator.forward()}
+                >
+                    Forth
+                </button>
             </div>
+            ${choice(
+                'Move',
+                'navigation',
+                model.navigator.mode,
+                [
+                    ['orbit', 'Orbit'],
+                    ['earth', 'Earth'],
+                    ['fly', 'Fly'],
+                ],
+                (mode) => model.setNavigation(mode),
+            )}
+            ${model.navigator.mode === 'fly'
+                ? html`<p class="hint">W, A, S, D walk, E and Q rise and sink; the wheel makes it faster or slower while a key is held.</p>`
+                : ''}
             ${choice(
                 'Projection',
                 'projection',

@@ -2,7 +2,7 @@
 
 export type Vector = [number, number, number];
 export type Projection = 'perspective' | 'orthographic';
-export type NamedView = 'top' | 'front' | 'iso';
+export type NamedView = 'top' | 'front' | 'side' | 'iso';
 
 export interface Camera {
     projection: Projection;

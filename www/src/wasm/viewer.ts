@@ -92,6 +92,39 @@ export class Viewer {
     zoom(factor: number, x: number, y: number): void {
         this.program._stipple_zoom(factor, x, y);
     }
+    /** Steps of client/core/navigation.hpp; pixels of the canvas, world units. */
+    orbitAbout(pivot: Vector, dx: number, dy: number): void {
+        this.program._stipple_orbit_about(...pivot, dx, dy);
+    }
+    dragGround(grabbed: Vector, x: number, y: number): void {
+        this.program._stipple_drag_ground(...grabbed, x, y);
+    }
+    dragAtDepth(grabbed: Vector, x: number, y: number): void {
+        this.program._stipple_drag_at_depth(...grabbed, x, y);
+    }
+    zoomToPoint(point: Vector, factor: number): void {
+        this.program._stipple_zoom_to_point(...point, factor);
+    }
+    lookAround(dx: number, dy: number): void {
+        this.program._stipple_look_around(dx, dy);
+    }
+    walk(forward: number, right: number, up: number, level: boolean): void {
+        this.program._stipple_walk(forward, right, up, level ? 1 : 0);
+    }
+    /** Each begins a flight; its length, 0 if there is none to fly. */
+    flyToCamera(camera: object): void {
+        this.change(camera, (at) => this.program._stipple_fly_to_camera(at));
+    }
+    flyToPoint(point: Vector, part: number): number {
+        return this.program._stipple_fly_to_point(...point, part);
+    }
+    flyToCloud(id: number): number {
+        return this.program._stipple_fly_to_cloud(id);
+    }
+    /** Goes to t (0..1) of the flight; false if it is over. */
+    fly(t: number): boolean {
+        return this.program._stipple_fly(t) !== 0;
+    }
     showView(view: NamedView): void {
         this.heap.lendTexts([view], (at) => this.expect(this.program._stipple_show_view(at!)));
     }
@@ -105,6 +138,11 @@ export class Viewer {
     }
     takePick(): PickAnswer {
         return this.json<PickAnswer>(this.program._stipple_take_pick());
+    }
+
+    /** The place alone, as soon as the picture has answered. */
+    takePlace(): { pending: boolean; place?: Vector | null; error?: string } {
+        return this.json(this.program._stipple_take_place());
     }
 
     /** client/survey/measure_json.hpp. Throws the sentence of what can't be measured. */

@@ -117,5 +117,5 @@ TEST_CASE("a cloud shows its stage, and its error once it failed") {
 
 TEST_CASE("named views are known by name") {
     CHECK(namedViewFromName("iso") == NamedView::iso);
-    CHECK(namedViewFromName("side") == std::nullopt);
+    CHECK(namedViewFromName("back") == std::nullopt);
 }

@@ -129,7 +129,7 @@ TEST_CASE("named cameras show degenerate boxes at any offset", "[numerics]") {
     for (double offset : offsets)
         for (Vec3d size :
              {Vec3d{0, 0, 0}, {5, 0, 0}, {0, 5, 0}, {0, 0, 5}, {5, 5, 0}, {0, 5, 5}, {1e-3, 1e3, 1}})
-            for (NamedView name : {NamedView::top, NamedView::front, NamedView::iso})
+            for (NamedView name : {NamedView::top, NamedView::front, NamedView::side, NamedView::iso})
                 for (Projection projection : {Projection::perspective, Projection::orthographic}) {
                     Vec3d corner{offset, offset, offset};
                     BoxD box{corner, corner + size};

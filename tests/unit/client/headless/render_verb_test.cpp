@@ -137,7 +137,7 @@ TEST_CASE("wrong options are told apart before anything is read", "[render]") {
     Scratch scratch;
     std::string output = scratch.file("a.png");
     std::vector<std::vector<std::string>> wrong{
-        {"--view", "side"},
+        {"--view", "back"},
         {"--view", "{\"position\": [1, 2]}"},
         {"--view", "{\"place\": [1, 2, 3]}"},
         {"--view", "{\"position\""},
