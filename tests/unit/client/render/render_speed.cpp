@@ -144,6 +144,8 @@ void compareExpansion(const char* name, const Draw& draw, const std::vector<Test
 } // namespace
 
 int main(int argc, char** argv) {
+    // Minutes of work a line: each is there when it is known, also in a pipe or a file.
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     double million = argc > 1 ? std::atof(argv[1]) : 4;
     int width = argc > 3 ? std::atoi(argv[2]) : 1280, height = argc > 3 ? std::atoi(argv[3]) : 720;
     bool withGles = argc <= 4 || std::atoi(argv[4]) != 0;
