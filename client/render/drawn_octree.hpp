@@ -1,5 +1,7 @@
 // The octree of a frame's drawn nodes, as the vertex shader and the software renderer walk it to find how
 // fine the picture is where a point lies (Potree thesis §4.3.3; the walk starts at the point's own node).
+// Dynamic batching, which sorts points so that no walk is needed, is its competitor in tests/bench
+// (point_batches.hpp); docs/MEASUREMENTS.md says why it is not used.
 //
 // One word per node, breadth first, one cloud after another:
 //

@@ -6,11 +6,8 @@
 // frames; and the worst of all.
 #include "client/core/continuous_detail.hpp"
 #include "client/core/frame_planner.hpp"
-#include "client/core/view_session.hpp"
-#include "client/headless/session_loader.hpp"
-#include "client/headless/thread_decoder.hpp"
 #include "client/render/software_renderer.hpp"
-#include "shared/io/file_source.hpp"
+#include "tests/bench/settled_viewer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,54 +21,14 @@ namespace {
 constexpr int width = 1280, height = 720, blockPixels = 16;
 constexpr double step = 0.997, spacingPixels = 2;
 
-[[noreturn]] void fail(const Error& error) {
-    std::fprintf(stderr, "popping: %s\n", error.sentence().c_str());
-    std::exit(1);
+Camera cameraAt(const CloudMetadata& metadata, int frame) {
+    BoxD bounds = metadata.worldBounds();
+    Camera camera;
+    camera.target = bounds.min + (bounds.max - bounds.min) * 0.5;
+    camera.position =
+        camera.target + Vec3d{-0.12, -0.18, 0.1} * length(bounds.max - bounds.min) * std::pow(step, frame);
+    return camera;
 }
-
-struct Viewer {
-    std::unique_ptr<NodeDecoder> decoder = makeThreadDecoder(2);
-    std::unique_ptr<ViewSession> session;
-    std::unique_ptr<SoftwareRenderer> renderer = SoftwareRenderer::create(2);
-    std::shared_ptr<const CloudMetadata> metadata;
-    SessionLimits limits;
-
-    explicit Viewer(const std::string& path) {
-        limits.cacheBytes = 4ull << 30;
-        limits.minNodePixels = 0;
-        limits.pointBudget = 0;
-        session = ViewSession::create(*decoder, limits);
-        session->setViewport(width, height);
-        auto source = openFileSource(path);
-        if (!source.ok())
-            fail(source.error());
-        session->addCloud(std::move(*source), path);
-        settle([&] { return session->clouds()[0].stage == CloudStage::ready; });
-        metadata = session->clouds()[0].metadata;
-    }
-    void settle(const std::function<bool()>& done) {
-        headless::SessionLoader loader(*session, "cloud", std::chrono::minutes(5));
-        if (Status status = loader.until(done); !status.ok())
-            fail(status.error());
-    }
-    FramePlan plan(const Camera& camera, const Style& style, std::uint64_t budget) {
-        limits.pointBudget = budget;
-        session->setLimits(limits);
-        session->setStyle(style);
-        session->setCamera(camera);
-        session->update();
-        settle([&] { return session->settled(); });
-        return session->plan();
-    }
-    Camera cameraAt(int frame) const {
-        BoxD bounds = metadata->worldBounds();
-        Camera camera;
-        camera.target = bounds.min + (bounds.max - bounds.min) * 0.5;
-        camera.position = camera.target +
-                          Vec3d{-0.12, -0.18, 0.1} * length(bounds.max - bounds.min) * std::pow(step, frame);
-        return camera;
-    }
-};
 
 bool shows(const FramePlan& plan, const DrawNode& node, std::uint32_t rank, Vec3d world) {
     if (plan.detailPixels == 0)
@@ -150,22 +107,24 @@ struct Outcome {
 };
 
 // Along the path. `budgets`: of each frame; empty: no limit.
-Outcome along(Viewer& viewer, const Style& style, int frames, std::vector<std::uint64_t>& counts,
+Outcome along(SettledViewer& viewer, const Style& style, int frames, std::vector<std::uint64_t>& counts,
               bool follow) {
+    auto renderer = SoftwareRenderer::create(2);
+    const CloudMetadata& metadata = viewer.metadata();
     Outcome result;
     FramePlan before;
     for (int frame = 0; frame <= frames; ++frame) {
         auto at = static_cast<std::size_t>(frame);
-        FramePlan plan = viewer.plan(viewer.cameraAt(frame), style, follow ? counts[at] : 1ull << 40);
+        FramePlan plan = viewer.plan(cameraAt(metadata, frame), style, follow ? counts[at] : noBudget, 0);
         std::uint64_t points = 0, earlier = 0;
-        FramePlan now = frozen(*viewer.metadata, plan, plan.view, points);
+        FramePlan now = frozen(metadata, plan, plan.view, points);
         if (!follow)
             counts.push_back(points);
         result.points += static_cast<double>(points) / (frames + 1);
         if (frame > 0) {
-            FramePlan old = frozen(*viewer.metadata, before, plan.view, earlier);
-            Image a = viewer.renderer->render(old);
-            Change change = changeOf(a, viewer.renderer->render(now));
+            FramePlan old = frozen(metadata, before, plan.view, earlier);
+            Image a = renderer->render(old);
+            Change change = changeOf(a, renderer->render(now));
             result.mean.mean += change.mean / frames;
             result.mean.rms += change.rms / frames;
             result.mean.largest += change.largest / frames;
@@ -191,7 +150,7 @@ int main(int argc, char** argv) {
     }
     std::printf("| cloud | | points | mean | RMS | largest block | worst |\n|---|---|---|---|---|---|---|\n");
     for (int i = 2; i < argc; ++i) {
-        Viewer viewer(argv[i]);
+        SettledViewer viewer(argv[i], width, height);
         std::vector<std::uint64_t> counts;
         Style style;
         style.detail.mode = DetailMode::continuous;
