@@ -213,11 +213,10 @@ std::vector<double> Painter::elevations(const PaintedNode& node, double from) co
 }
 
 std::vector<double> Painter::levels(const PaintedNode& node) const {
-    double level = node.node->key.level, total = std::max(1u, node.node->totalPoints);
-    std::vector<double> found(node.node->pointCount, level);
+    std::vector<double> found(node.node->pointCount, node.node->key.level);
     if (continuous_)
-        for (std::size_t i = 0; i < found.size(); ++i)
-            found[i] = level - 1 + std::log2(1 + 3 * (static_cast<double>(i) + 0.5) / total) / 2;
+        for (std::uint32_t i = 0; i < node.node->pointCount; ++i)
+            found[i] = rankLevel(node.density, node.rootSpacing, i);
     return found;
 }
 

@@ -8,6 +8,7 @@
 #include "client/core/clip_boxes.hpp"
 #include "client/core/colour_style.hpp"
 #include "client/core/node_columns.hpp"
+#include "client/core/rank_density.hpp"
 #include "client/core/resident_node.hpp"
 #include "shared/geometry/grid.hpp"
 
@@ -40,6 +41,10 @@ struct PaintedNode {
     BoxD box;                                                    // that its points lie in, world units
     // Nothing that it shows is coarse: points in their own colours, where `columns` has them.
     bool exact = false;
+    // Of its points by rank, and the spacing of the root: what levels come from with continuous detail, as
+    // the choice of points does.
+    RankDensity density;
+    double rootSpacing = 1;
 };
 
 class Painter {

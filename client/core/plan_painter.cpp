@@ -28,8 +28,9 @@ bool PlanPainter::paint(const CloudLoader& cloud, std::uint32_t node, bool exact
     const HierarchyNode& known = cloud.hierarchy.node(node);
     Painter painter(style_, clips_, metadata.schema, metadata.grid, metadata.colourIs8Bit,
                     style_.detail.mode == DetailMode::continuous);
-    cached.paint = painter.paint(
-        {cached.node, columns, metadata.rootCube.nodeMin(known.entry.key), known.geometry.box, exact});
+    cached.paint =
+        painter.paint({cached.node, columns, metadata.rootCube.nodeMin(known.entry.key), known.geometry.box,
+                       exact, cloud.hierarchy.densityOf(node), metadata.spacing});
     cached.paintKey = key;
     counters_.nodesPainted += cached.paint != nullptr;
     return true;

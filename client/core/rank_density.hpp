@@ -19,4 +19,8 @@ RankDensity rankDensity(int level, double spacing, std::uint32_t points);
 // `siblings`-th of it is the leaf's.
 RankDensity leafDensity(const RankDensity& asOfAnyNode, const RankDensity& parent, int siblings);
 
+// The level that the point of a rank is of, by its spacing: log2(rootSpacing / spacing). Negative for all of
+// the root's.
+double rankLevel(const RankDensity& density, double rootSpacing, std::uint32_t rank);
+
 } // namespace stipple

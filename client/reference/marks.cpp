@@ -165,9 +165,14 @@ namespace {
 double levelOf(const Style& style, const Points& points, std::size_t i) {
     if (style.detail.mode == DetailMode::discrete)
         return points.level;
-    // client/core/continuous_detail.hpp
+    // client/core/continuous_detail.hpp: how many times as dense as the level above, and four times is a
+    // level.
+    double nth = static_cast<double>(i), half = 0.5;
+    if (points.level == 0)
+        return std::log((nth + half) / points.nodePoints) / std::log(4.0);
+    double share = 3 / points.nodePoints;
     return points.level - 1 +
-           std::log(1 + 3 * (static_cast<double>(i) + 0.5) / points.nodePoints) / std::log(4.0);
+           std::log(1 + half * share + nth * std::max(share, points.leafStep)) / std::log(4.0);
 }
 
 // Empty: the cloud has nothing of that kind.

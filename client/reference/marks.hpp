@@ -24,6 +24,9 @@ struct Points {
     // Of the node that the batch is, in progressive order.
     int level = 0;
     double nodePoints = 1;
+    // Of a leaf: by how many points of the level above, on the same area, its own are more dense with each of
+    // them; 0: as in any other node (reference/leaf_densities.hpp). For levels of points.
+    double leafStep = 0;
 };
 
 // Levels 0..255, not rounded.

@@ -1,6 +1,7 @@
 #include "client/reference/render_cloud.hpp"
 
 #include "client/reference/finest_nodes.hpp"
+#include "client/reference/leaf_densities.hpp"
 #include "client/reference/node_reader.hpp"
 #include "shared/base/text.hpp"
 
@@ -52,6 +53,13 @@ Status drawAll(CloudReader& reader, Reading reading, std::vector<std::unique_ptr
         STIPPLE_TRY(nodes, FinestNodes::of(reader));
         finest = std::move(nodes);
     }
+    std::optional<LeafDensities> leaves;
+    if (std::any_of(easels.begin(), easels.end(), [](const auto& easel) {
+            return easel->job.style.detail.mode == DetailMode::continuous;
+        })) {
+        STIPPLE_TRY(densities, LeafDensities::of(reader));
+        leaves = std::move(densities);
+    }
     return visitPoints(reader, attributes, threads,
                        [&](const NodeKey& key, const PointBatch& batch, std::uint64_t firstOrder) {
                            Points points = shared;
@@ -59,6 +67,8 @@ Status drawAll(CloudReader& reader, Reading reading, std::vector<std::unique_ptr
                            points.level = key.level;
                            points.nodePoints = static_cast<double>(batch.size());
                            points.firstOrder = firstOrder;
+                           if (leaves)
+                               points.leafStep = leaves->stepOf(key);
                            if (finest)
                                points.spacings = finest->spacingsAt(batch);
                            std::vector<Mark> marks;

@@ -21,7 +21,7 @@
 namespace stipple::reference {
 
 // Of the pictures: what is kept of an older one is no longer right.
-inline constexpr int referenceVersion = 1;
+inline constexpr int referenceVersion = 2;
 
 struct Job {
     View view;

@@ -113,7 +113,10 @@ void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes) {
         box.extend(grid.toWorld({side, side, side}));
         Painter painter(plan.style, *clips, schema, grid, true,
                         plan.style.detail.mode == DetailMode::continuous);
-        plan.nodes[n].paint = painter.paint({plan.nodes[n].node, {}, {0, 0, 0}, box});
+        const ResidentNode& resident = *plan.nodes[n].node;
+        RankDensity density = rankDensity(resident.key.level, std::ldexp(1.0, -resident.key.level),
+                                          std::max(1u, resident.totalPoints));
+        plan.nodes[n].paint = painter.paint({plan.nodes[n].node, {}, {0, 0, 0}, box, false, density, 1});
     }
 }
 

@@ -24,12 +24,15 @@ struct Fixture {
     ResidentNode node;
     std::vector<std::shared_ptr<const NodeColumns>> columns;
     bool exact = false, continuous = false;
+    double rootSpacing = 3;
+    RankDensity density;
 
     explicit Fixture(std::uint32_t points) {
         NodePicture picture;
         for (std::uint32_t i = 0; i < points; ++i)
             picture.positions.push_back({10 * i, 3, 10 * i});
         node = packNode({4, 0, 0, 0}, 10, points, picture, PictureColour::none, false);
+        density = rankDensity(4, rootSpacing / 16, points);
     }
 
     template <class T>
@@ -52,7 +55,8 @@ struct Fixture {
         box.extend(grid.toWorld(corner));
         box.extend(grid.toWorld(corner + Vec3i{1023, 1023, 1023}));
         Painter painter(style, clips, schema, grid, false, continuous);
-        return painter.paint({std::make_shared<ResidentNode>(node), columns, corner, box, exact});
+        return painter.paint(
+            {std::make_shared<ResidentNode>(node), columns, corner, box, exact, density, rootSpacing});
     }
     std::vector<bool> shown() {
         auto painted = paint();
@@ -162,6 +166,14 @@ TEST_CASE("levels are of nodes, or with continuous detail of points") {
     CHECK(((*paint->words)[0] & 255) < 10);
     CHECK(((*paint->words)[50] & 255) == Approx(255 * std::log2(1 + 3 * 0.505) / 2).margin(2));
     CHECK(((*paint->words)[99] & 255) > 250);
+
+    // A leaf twelve times as dense as a node of its level would be: its points are of finer levels.
+    f.style.levelRange = {3, 6};
+    f.density.step *= 12;
+    paint = f.paint();
+    CHECK(((*paint->words)[0] & 255) < 10);
+    CHECK(((*paint->words)[50] & 255) == Approx(255 * std::log2(1 + 0.015 + 36 * 0.5) / 6).margin(2));
+    CHECK(((*paint->words)[99] & 255) == Approx(255 * std::log2(1 + 0.015 + 36 * 0.99) / 6).margin(2));
 }
 
 TEST_CASE("heights are exact far from the origin") {

@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -454,6 +455,34 @@ TEST_CASE("nodes that are clipped away are neither fetched nor drawn") {
     style.clipBoxes[0].halfSize = {1e200, 1, 1}; // can't be computed with
     fixture.session->setStyle(style);
     CHECK(fixture.session->style().clipBoxes[0].halfSize.x < 1e100);
+}
+
+TEST_CASE("the level of a leaf's point follows its density, as the choice of points does") {
+    SmallCloud cloud = makeSmallCloud({.levels = 2}); // a root and its four leaves, 400 points each
+    Fixture fixture(everything());
+    fixture.openAndFit(cloud);
+    Style style;
+    style.detail.mode = DetailMode::continuous;
+    style.detail.spacingPixels = 0.01;
+    style.colourMode = ColourMode::level;
+    style.gradient = GradientName::grey;
+    style.levelRange = {0, 2};
+    fixture.session->setStyle(style);
+    REQUIRE(fixture.settle());
+    std::size_t leaves = 0;
+    for (const DrawNode& node : fixture.session->plan().nodes) {
+        REQUIRE(node.paint);
+        for (std::size_t i = 0; i < node.node->pointCount; i += 57) {
+            double rank = static_cast<double>(i);
+            // Of the root's points those before it; of a leaf's four times what it adds to the root's share.
+            double level = node.node->key.level == 0 ? std::log2((rank + 0.5) / 400) / 2
+                                                     : std::log2(1 + 1.5 / 400 + rank * 4 / 400) / 2;
+            CHECK(((*node.paint->words)[i] & 255) ==
+                  Approx(255 * std::clamp(level / 2, 0.0, 1.0)).margin(1.5));
+        }
+        leaves += node.node->key.level == 1;
+    }
+    CHECK(leaves == 4);
 }
 
 TEST_CASE("where nothing is coarse exact colours are shown, of coarse nodes the means") {

@@ -1,4 +1,5 @@
 #include "client/reference/finest_nodes.hpp"
+#include "client/reference/leaf_densities.hpp"
 #include "client/reference/render_cloud.hpp"
 #include "shared/format/cloud_file.hpp"
 #include "shared/io/memory_source.hpp"
@@ -62,6 +63,9 @@ DepthImage drawnAtOnce(const Job& of) {
         points.firstOrder = order;
         points.level = entry.key.level;
         points.nodePoints = entry.pointCount;
+        // Nodes have four children with as many points as themselves, so a leaf's next point makes it denser
+        // by three in 400, as in any other node; had the file but two levels, by four.
+        points.leafStep = entry.childMask == 0 ? 4 * 0.75 / 400 : 0;
         order += batch->size();
         appendMarks(of.view, of.style, points, marks);
     }
@@ -80,6 +84,47 @@ TEST_CASE("a cloud is drawn with every point, in any colour") {
         CHECK(std::count_if(picture.distances.begin(), picture.distances.end(),
                             [](float d) { return d > 0; }) > 2000);
     }
+}
+
+TEST_CASE("with continuous detail the level of a leaf's point follows the density of the level above") {
+    Job one = job(NamedView::iso, ColourMode::level);
+    one.style.detail.mode = DetailMode::continuous;
+    one.style.levelRange = {0, 3};
+    CHECK(same(draw({one})[0], drawnAtOnce(one)));
+
+    auto stepsOf = [](const SmallCloud& of) {
+        MemorySource source(of.file);
+        auto reader = CloudReader::open(source);
+        REQUIRE(reader.ok());
+        auto densities = reference::LeafDensities::of(**reader);
+        REQUIRE(densities.ok());
+        std::vector<double> steps;
+        for (const NodeEntry& entry : of.nodes)
+            steps.push_back(densities->stepOf(entry.key));
+        return steps;
+    };
+    std::vector<double> deep = stepsOf(cloud()), flat = stepsOf(makeSmallCloud({.levels = 2}));
+    REQUIRE(deep.size() == 21);
+    CHECK(std::count(deep.begin(), deep.begin() + 5, 0) == 5); // the root and its children
+    CHECK(std::count(deep.begin() + 5, deep.end(), 4 * 0.75 / 400) == 16);
+    CHECK(flat == std::vector<double>{0, 0.01, 0.01, 0.01, 0.01});
+
+    // 400 points on a quarter of what the root's 400 fill.
+    Style style = one.style;
+    style.gradient = GradientName::grey;
+    style.levelRange = {0, 2};
+    PointBatch batch;
+    batch.positions.resize(400);
+    reference::Points leaf;
+    leaf.batch = &batch;
+    leaf.level = 1;
+    leaf.nodePoints = 400;
+    leaf.leafStep = 0.01;
+    CHECK(coloursOf(style, leaf)[399][0] == Approx(255 * std::log2(1 + 1.5 / 400 + 3.99) / 4).margin(1));
+    leaf.leafStep = 0;
+    CHECK(coloursOf(style, leaf)[399][0] == Approx(127.5).margin(1));
+    leaf.level = 0;
+    CHECK(coloursOf(style, leaf)[399][0] == Approx(0).margin(1));
 }
 
 TEST_CASE("the spacing where a point lies is that of the finest of all nodes that hold it") {
