@@ -1,226 +1,251 @@
 // What each skip saves and what it costs in error, for one cloud and view: skip_table CLOUD.stipple
-// [CAMERA-JSON]. Prints a Markdown table. Errors are against the same picture without the skip, levels of
-// 255.
-#include "client/core/continuous_detail.hpp"
+// [CAMERA-JSON]. Prints a Markdown table: nodes, points and bytes without the skip and with it; how long
+// drawing takes with it as part of what it takes without (one thread, in turns, so the ratio holds on a busy
+// machine); the error against the picture without it, levels of 255, and pixels that differ. Ends with 1
+// where a skip that is to change nothing does.
+#include "client/bench/statistics.hpp"
 #include "client/core/frustum.hpp"
-#include "client/core/hierarchy.hpp"
 #include "client/core/json.hpp"
-#include "client/core/selection.hpp"
-#include "client/core/view_session.hpp"
-#include "client/headless/session_loader.hpp"
-#include "client/headless/thread_decoder.hpp"
 #include "client/measure/pixel_error.hpp"
 #include "client/render/software_renderer.hpp"
-#include "shared/format/cloud_file.hpp"
-#include "shared/io/file_source.hpp"
+#include "shared/geometry/oriented_box.hpp"
+#include "tests/bench/settled_viewer.hpp"
+#include "tests/bench/whole_cloud.hpp"
 
-#include <nlohmann/json.hpp>
-
-#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 
 using namespace stipple;
 
 namespace {
 
-constexpr int width = 1920, height = 1080;
+constexpr int width = 1920, height = 1080, rounds = 7;
+constexpr double minNodePixels = 60;
 
-template <class T>
-T need(Result<T> result) {
-    if (!result.ok()) {
-        std::fprintf(stderr, "skip_table: %s\n", result.error().sentence().c_str());
-        std::exit(1);
-    }
-    return std::move(*result);
+double seconds(const std::function<void()>& work) {
+    auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void row(const char* skip, const char* work, double without, double with, const char* error) {
-    std::printf("| %s | %s: %.4g → %.4g | %.1f %% | %s |\n", skip, work, without, with,
-                100 * (1 - with / std::max(without, 1e-300)), error);
-}
-
-std::string levels(const Image& a, const Image& b) {
-    measure::PixelError apart = measure::pixelError(a, b, 0);
-    char text[80];
-    std::snprintf(text, sizeof text, "%.3f in the mean, %zu pixels", apart.mean, apart.differing);
-    return apart.differing == 0 ? "none" : text;
-}
-
-struct Cloud {
-    std::unique_ptr<ByteSource> source;
-    std::unique_ptr<CloudReader> reader;
-    Hierarchy hierarchy;
-    std::uint64_t attributeBytes = 0, pictureBytes = 0;
-
-    explicit Cloud(const std::string& path)
-        : source(need(openFileSource(path))), reader(need(CloudReader::open(*source))) {
-        std::vector<NodeEntry> nodes;
-        Status read = reader->visitNodes([&](const NodeEntry& entry) {
-            nodes.push_back(entry);
-            nodes.back().childChunk = {};
-            return Status();
-        });
-        if (!read.ok())
-            std::exit(1);
-        // A hierarchy wants parents first.
-        std::stable_sort(nodes.begin(), nodes.end(),
-                         [](const NodeEntry& a, const NodeEntry& b) { return a.key.level < b.key.level; });
-        hierarchy =
-            need(Hierarchy::create(std::make_shared<CloudMetadata>(reader->metadata()), std::move(nodes)));
+// What is drawn and what was fetched for it.
+struct Work {
+    FramePlan plan;
+    double bytes = 0;
+    double points() const {
+        double sum = 0;
+        for (const DrawNode& node : plan.nodes)
+            sum += node.pointCount;
+        return sum;
     }
 };
 
-// A session over the cloud, settled before each look at it.
-struct Viewer {
-    std::unique_ptr<NodeDecoder> decoder = makeThreadDecoder(2);
-    std::unique_ptr<ViewSession> session;
-    std::unique_ptr<SoftwareRenderer> renderer = SoftwareRenderer::create(2);
+enum class Promise { exact, near }; // what the skip is to do to the picture: nothing, or little
 
-    Viewer(const std::string& path, const Camera& camera) {
-        SessionLimits limits;
-        limits.pointBudget = 0;
-        limits.cacheBytes = 4ull << 30;
-        session = ViewSession::create(*decoder, limits);
-        session->setViewport(width, height);
-        session->addCloud(need(openFileSource(path)), path);
-        settle([&] { return session->clouds()[0].stage == CloudStage::ready; });
-        session->setCamera(camera);
+class Table {
+  public:
+    Table() {
+        std::printf("| skip | nodes | points | MB fetched | drawing takes | mean error, pixels |\n"
+                    "|---|---|---|---|---|---|\n");
     }
-    void settle(const std::function<bool()>& done) {
-        headless::SessionLoader loader(*session, "cloud", std::chrono::minutes(5));
-        Status status = loader.until(done);
-        if (!status.ok()) {
-            std::fprintf(stderr, "skip_table: %s\n", status.error().sentence().c_str());
-            std::exit(1);
+    void add(const std::string& skip, Work& without, Work& with, Promise promise) {
+        Image whole = renderer_->render(without.plan), skipped = renderer_->render(with.plan);
+        measure::PixelError apart = measure::pixelError(whole, skipped, 0);
+        std::vector<double> ratios;
+        for (int i = 0; i < rounds; ++i) {
+            double before = seconds([&] { renderer_->render(without.plan); });
+            ratios.push_back(seconds([&] { renderer_->render(with.plan); }) / before);
+        }
+        std::printf("| %s | %zu → %zu | %.2f M → %.2f M | %.2f → %.2f | %.3f | %.4g, %llu |\n", skip.c_str(),
+                    without.plan.nodes.size(), with.plan.nodes.size(), without.points() / 1e6,
+                    with.points() / 1e6, without.bytes / 1e6, with.bytes / 1e6, bench::median(ratios),
+                    apart.mean, static_cast<unsigned long long>(apart.differing));
+        if (promise == Promise::exact && apart.differing > 0) {
+            std::fprintf(stderr, "skip_table: '%s' is to change nothing, but %llu pixels differ\n",
+                         skip.c_str(), static_cast<unsigned long long>(apart.differing));
+            broken_ = true;
         }
     }
-    FramePlan plan(const Style& style, double minNodePixels) {
-        SessionLimits limits = session->limits();
-        limits.pointBudget = 1ull << 40;
-        limits.minNodePixels = minNodePixels;
-        session->setLimits(limits);
-        session->setStyle(style);
-        session->update();
-        settle([&] { return session->settled(); });
-        return session->plan();
+    bool broken() const { return broken_; }
+
+  private:
+    std::unique_ptr<SoftwareRenderer> renderer_ = SoftwareRenderer::create(1);
+    bool broken_ = false;
+};
+
+struct Scene {
+    WholeCloud cloud;
+    Camera camera;
+
+    Work work(const std::vector<NodePart>& parts, const Style& style) const {
+        return {cloud.planOf(parts, camera, style), cloud.bytesOf(parts, style)};
     }
-    Image picture(FramePlan plan) { return renderer->render(plan); }
-    double drawSeconds(FramePlan plan) {
-        std::vector<double> times;
-        for (int i = 0; i < 9; ++i) {
-            auto start = std::chrono::steady_clock::now();
-            renderer->render(plan);
-            times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        }
-        std::nth_element(times.begin(), times.begin() + 4, times.end());
-        return times[4];
+    std::vector<NodePart> large(const ClipBoxes* clips = nullptr) const {
+        return cloud.selected(camera, minNodePixels, 0, clips);
     }
 };
 
-double pointsAnywhere(const Hierarchy& hierarchy, const ViewTransform& view, double minNodePixels) {
-    double points = 0;
-    for (std::size_t i = 0; i < hierarchy.size(); ++i) {
+// Circles, whose edges reach into the picture from outside, and single pixels, which don't.
+void frustum(const Scene& scene, Table& table) {
+    const Hierarchy& hierarchy = scene.cloud.hierarchy();
+    ViewTransform view = scene.cloud.viewOf(scene.camera);
+    std::vector<NodePart> anywhere;
+    for (std::uint32_t i = 0; i < hierarchy.size(); ++i) {
         const HierarchyNode& node = hierarchy.node(i);
         if (i == 0 ||
             projectedPixels(view, height, node.geometry.centre, node.geometry.radius) >= minNodePixels)
-            points += node.entry.pointCount;
+            anywhere.push_back({i, node.entry.pointCount});
     }
-    return points;
+    std::vector<NodePart> seen = scene.large();
+    Style circles, pixels;
+    pixels.sizePixels = 1;
+    pixels.edl.enabled = false;
+    Work all = scene.work(anywhere, pixels), some = scene.work(seen, pixels);
+    table.add("frustum, points of 1 pixel", all, some, Promise::exact);
+    all = scene.work(anywhere, circles);
+    some = scene.work(seen, circles);
+    table.add("frustum, circles of 2 pixels", all, some, Promise::near);
 }
 
-void frustum(const Cloud& cloud, const Camera& camera, double minNodePixels) {
-    std::vector<NodeResidency> residency(cloud.hierarchy.size());
-    std::vector<SelectionCloud> clouds{{&cloud.hierarchy, residency, 12}};
-    SelectionInput input;
-    input.view = viewTransform(camera, width, height, cloud.hierarchy.metadata().worldBounds());
-    input.height = height;
-    input.clouds = clouds;
-    input.pointBudget = input.byteBudget = ~0ull >> 8;
-    input.minNodePixels = minNodePixels;
-    Selection selection = select(input);
-    row("frustum", "points", pointsAnywhere(cloud.hierarchy, input.view, minNodePixels),
-        static_cast<double>(selection.counters.pointsSelected),
-        "none: what is skipped is out of the picture");
+void size(const Scene& scene, Table& table) {
+    Work all = scene.work(scene.cloud.selected(scene.camera, 0), {}), some = scene.work(scene.large(), {});
+    table.add("size: nodes under 60 pixels", all, some, Promise::near);
 }
 
-void size(Viewer& viewer) {
-    FramePlan all = viewer.plan({}, 0), large = viewer.plan({}, 60);
-    row("size: nodes under 60 pixels", "points", static_cast<double>(all.counters.pointsDrawn),
-        static_cast<double>(large.counters.pointsDrawn),
-        levels(viewer.picture(all), viewer.picture(large)).c_str());
-}
-
-void prefix(Viewer& viewer) {
+void prefix(const Scene& scene, Table& table) {
     Style style;
     style.detail.mode = DetailMode::continuous;
     style.detail.spacingPixels = 1;
-    FramePlan sent = viewer.plan(style, 0);
-    // Whatever else of these nodes is here lies behind the prefix.
-    FramePlan whole = sent;
-    double selected = 0;
-    for (DrawNode& node : whole.nodes) {
-        node.pointCount = node.node->pointCount;
-        selected += node.node->totalPoints;
-    }
-    row("prefix: continuous detail, 1 pixel", "points", selected,
-        static_cast<double>(sent.counters.pointsDrawn),
-        levels(viewer.picture(whole), viewer.picture(sent)).c_str());
+    std::vector<NodePart> prefixes = scene.cloud.selected(scene.camera, 0, 1), whole = prefixes;
+    for (NodePart& part : whole)
+        part.points = scene.cloud.hierarchy().node(part.node).entry.pointCount;
+    Work all = scene.work(whole, style), some = scene.work(prefixes, style);
+    table.add("prefix: continuous detail, 1 pixel", all, some, Promise::exact);
 }
 
-void attributes(const Cloud& cloud, Viewer& viewer) {
-    FramePlan plan = viewer.plan({}, 60);
-    double all = 0, used = 0;
-    for (const DrawNode& node : plan.nodes) {
-        const NodeEntry& entry =
-            cloud.hierarchy.node(static_cast<std::size_t>(cloud.hierarchy.find(node.node->key))).entry;
-        all += static_cast<double>(entry.sizeBytes());
-        used += static_cast<double>(entry.strataRange(strataCount).size);
-    }
-    row("attributes that the style does not use", "bytes", all, used, "none");
-}
-
-void pass(Viewer& viewer) {
+void clip(Scene& scene, Table& table) {
+    BoxD bounds = scene.cloud.metadata().worldBounds();
     Style style;
-    FramePlan lit = viewer.plan(style, 60);
-    style.edl.enabled = false;
-    FramePlan plain = viewer.plan(style, 60);
-    row("pass: eye-dome lighting off", "ms a frame", 1e3 * viewer.drawSeconds(lit),
-        1e3 * viewer.drawSeconds(plain), "what was asked for");
+    style.clipBoxes = {{(bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.25, axesTurned(30)}};
+    for (ClipMode mode : {ClipMode::hideOutside, ClipMode::hideInside}) {
+        style.clipBoxes[0].mode = mode;
+        ClipBoxes clips = need(ClipBoxes::make(style.clipBoxes));
+        scene.cloud.hideBy(style);
+        Work all = scene.work(scene.large(), style), some = scene.work(scene.large(&clips), style);
+        table.add(mode == ClipMode::hideOutside ? "clip: hide outside a turned box of half the sides"
+                                                : "clip: hide inside it",
+                  all, some, Promise::exact);
+    }
 }
 
-void frame(Viewer& viewer) {
-    FramePlan plan = viewer.plan({}, 60);
-    double drawn = viewer.drawSeconds(plan);
-    auto start = std::chrono::steady_clock::now();
-    for (int i = 0; i < 1000; ++i)
-        if (viewer.session->update())
-            std::exit(1);
-    double still = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / 1000;
-    row("frame: nothing moved, nothing arrived", "ms a frame", 1e3 * drawn, 1e3 * still, "none");
+// One whose values lie together, if the cloud has any: then a filter hides whole nodes.
+const Attribute* filteredAttribute(const CloudMetadata& metadata, AttributeStatistics& values) {
+    for (std::string_view name : {attribute_names::pointSourceId, attribute_names::gpsTime,
+                                  attribute_names::intensity, attribute_names::red})
+        if (int at = findAttribute(metadata.schema, name); at >= 0) {
+            auto index = static_cast<std::size_t>(at);
+            if (index < metadata.statistics.size() &&
+                metadata.statistics[index].min < metadata.statistics[index].max) {
+                values = metadata.statistics[index];
+                return &metadata.schema.attributes[index];
+            }
+        }
+    return nullptr;
+}
+
+void filter(Scene& scene, Table& table) {
+    AttributeStatistics values;
+    const Attribute* attribute = filteredAttribute(scene.cloud.metadata(), values);
+    if (!attribute) {
+        std::fprintf(stderr,
+                     "skip_table: no attribute of the cloud has several values, so none is filtered\n");
+        return;
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    auto meaning = [&](double stored) { return attribute->offset + attribute->scale * stored; };
+    Style style;
+    style.filters = {{attribute->name, meaning(values.min + 0.9 * (values.max - values.min)), infinity}};
+    scene.cloud.hideBy(style);
+    std::vector<NodePart> parts = scene.large(), showing = parts;
+    std::erase_if(showing, [&](const NodePart& part) { return scene.cloud.hidesAllOf(part.node); });
+    Work all = scene.work(parts, style), some = scene.work(showing, style);
+    some.bytes = all.bytes; // that they show nothing is known once they are here
+    table.add("filter: nodes of which it hides all points (" + attribute->name + ", the uppermost tenth)",
+              all, some, Promise::exact);
+
+    style.filters[0].min = meaning(values.max) + std::abs(meaning(values.max) - meaning(values.min)) + 1;
+    scene.cloud.hideBy(style);
+    all = scene.work(parts, style);
+    bool hides = hidesAll(style, scene.cloud.metadata());
+    some = scene.work(hides ? std::vector<NodePart>() : parts, style);
+    table.add("filter: statistics say that it hides all points", all, some, Promise::exact);
+}
+
+void attributes(const Scene& scene, Table& table) {
+    std::vector<NodePart> parts = scene.large();
+    Work all = scene.work(parts, {}), some = scene.work(parts, {});
+    all.bytes = 0;
+    for (const NodePart& part : parts)
+        all.bytes += static_cast<double>(scene.cloud.hierarchy().node(part.node).entry.sizeBytes());
+    table.add("attribute: those that the style does not use", all, some, Promise::exact);
+}
+
+void pass(const Scene& scene, Table& table) {
+    Style style;
+    style.edl.strength = 1e-12; // changes nothing
+    Work lit = scene.work(scene.large(), style);
+    style.edl.strength = 0;
+    Work plain = scene.work(scene.large(), style);
+    table.add("pass: lighting that changes nothing", lit, plain, Promise::exact);
+}
+
+// Of a session, which selects, plans and draws a frame, or sees that there is nothing to do.
+void frame(const std::string& path, const Camera& camera) {
+    SettledViewer viewer(path, width, height);
+    auto renderer = SoftwareRenderer::create(1);
+    FramePlan plan = viewer.plan(camera, {}, noBudget, minNodePixels);
+    double drawn = seconds([&] {
+        viewer.session().setLimits(viewer.session().limits()); // makes it look again
+        viewer.session().update();
+        renderer->render(plan);
+    });
+    constexpr int stills = 1000;
+    double still =
+        seconds([&] {
+            for (int i = 0; i < stills; ++i)
+                if (viewer.session().update())
+                    endBench({ErrorCode::invalidArgument, "a still camera made a new frame", path, ""});
+        }) /
+        stills;
+    std::printf("| frame: nothing moved, nothing arrived | %zu → 0 | %.2f M → 0 | 0 → 0 | %.2g | 0, 0 |\n",
+                plan.nodes.size(), static_cast<double>(plan.counters.pointsDrawn) / 1e6, still / drawn);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
+    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     if (argc < 2) {
         std::fprintf(stderr, "skip_table CLOUD.stipple [CAMERA-JSON]\n");
         return 2;
     }
-    Cloud cloud(argv[1]);
-    BoxD bounds = cloud.hierarchy.metadata().worldBounds();
-    Camera camera;
-    camera.target = bounds.min + (bounds.max - bounds.min) * 0.5;
-    camera.position = camera.target + Vec3d{-0.1, -0.15, 0.1} * length(bounds.max - bounds.min);
+    Scene scene{WholeCloud(argv[1], width, height), {}};
+    BoxD bounds = scene.cloud.metadata().worldBounds();
+    scene.camera.target = bounds.min + (bounds.max - bounds.min) * 0.5;
+    scene.camera.position = scene.camera.target + Vec3d{-0.1, -0.15, 0.1} * length(bounds.max - bounds.min);
     if (argc > 2)
-        camera = need(cameraFromJson(std::string_view(argv[2]), camera));
-    Viewer viewer(argv[1], camera);
-    std::printf("| skip | work | saved | error |\n|---|---|---|---|\n");
-    frustum(cloud, camera, 60);
-    size(viewer);
-    prefix(viewer);
-    attributes(cloud, viewer);
-    pass(viewer);
-    frame(viewer);
+        scene.camera = need(cameraFromJson(std::string_view(argv[2]), scene.camera));
+    Table table;
+    frustum(scene, table);
+    size(scene, table);
+    prefix(scene, table);
+    attributes(scene, table);
+    pass(scene, table);
+    clip(scene, table);
+    filter(scene, table);
+    frame(argv[1], scene.camera);
+    return table.broken() ? 1 : 0;
 }
