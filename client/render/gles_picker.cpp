@@ -1,7 +1,9 @@
 #include "client/render/gles_picker.hpp"
 
+#include "client/render/gles_programs.hpp"
 #include "client/render/gles_targets.hpp"
 
+#include <array>
 #include <cstring>
 
 #ifdef __EMSCRIPTEN__
@@ -12,6 +14,8 @@ namespace stipple::gles {
 namespace {
 
 constexpr int side = 2 * maxPickRadius + 1;
+// Of the centres of points that reach into it.
+constexpr int centreSide = side + 2 * (maxPointPixels / 2 + 2);
 constexpr std::size_t wordsPerPixel = 4;
 
 // Copies from the buffer bound for packing; it holds at least `values`.
@@ -27,6 +31,20 @@ bool copyPacked(std::vector<GLuint>& values) {
     glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
 #endif
     return true;
+}
+
+// Binds and clears a framebuffer of identities for a part of the picture.
+void beginWindow(GLuint framebuffer, const PickTarget& target, const PickWindow& window) {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    // The picture's own viewport, moved: pixels have the same centres, so points cover the same ones.
+    glViewport(-window.left, -window.bottom, target.frame.width, target.frame.height);
+    glDisable(GL_SCISSOR_TEST);
+    glDepthMask(GL_TRUE);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    const GLuint none[4] = {0, 0, 0, 0};
+    const GLfloat farthest = 1;
+    glClearBufferuiv(GL_COLOR, 0, none);
+    glClearBufferfv(GL_DEPTH, 0, &farthest);
 }
 
 } // namespace
@@ -49,19 +67,45 @@ Status Picker::prepare() {
     return made;
 }
 
+Status Picker::prepareCentres() {
+    if (centresFramebuffer_)
+        return {};
+    makeTexture(centrePoints_, GL_RGBA32UI, centreSide, centreSide);
+    makeTexture(centrePlaces_, GL_R32UI, centreSide, centreSide);
+    makeTexture(centreDepth_, GL_DEPTH_COMPONENT32F, centreSide, centreSide);
+    glBindFramebuffer(GL_FRAMEBUFFER, centresFramebuffer_.make());
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, centrePoints_.id(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, centrePlaces_.id(), 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, centreDepth_.id(), 0);
+    const std::array<GLenum, 2> attachments{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+    glDrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
+    bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+    Status made = checkGl("making the buffers for picking");
+    if (made.ok() && !complete)
+        made = Error{ErrorCode::unsupported,
+                     "the driver refuses a framebuffer of four and one 32-bit integers", "OpenGL ES 3.0", ""};
+    if (!made.ok())
+        centresFramebuffer_ = Framebuffer();
+    return made;
+}
+
+Status Picker::beginCentres(const PickTarget& target) {
+    STIPPLE_CHECK(prepareCentres());
+    beginWindow(centresFramebuffer_.id(), target, target.centres);
+    return {};
+}
+
+void Picker::bindCentres(bool bound) const {
+    glActiveTexture(GL_TEXTURE0 + centrePointsUnit);
+    glBindTexture(GL_TEXTURE_2D, bound ? centrePoints_.id() : 0);
+    glActiveTexture(GL_TEXTURE0 + centrePlacesUnit);
+    glBindTexture(GL_TEXTURE_2D, bound ? centrePlaces_.id() : 0);
+}
+
 Status Picker::begin(const PickTarget& target) {
     fence_.reset();
     STIPPLE_CHECK(prepare());
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
-    // The picture's own viewport, moved: pixels have the same centres, so points cover the same ones.
-    glViewport(-target.window.left, -target.window.bottom, target.frame.width, target.frame.height);
-    glDisable(GL_SCISSOR_TEST);
-    glDepthMask(GL_TRUE);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    const GLuint none[4] = {0, 0, 0, 0};
-    const GLfloat farthest = 1;
-    glClearBufferuiv(GL_COLOR, 0, none);
-    glClearBufferfv(GL_DEPTH, 0, &farthest);
+    beginWindow(framebuffer_.id(), target, target.window);
     return {};
 }
 

@@ -15,6 +15,13 @@ namespace stipple::gles {
 
 class Picker {
   public:
+    // For delayed expansion, before begin(): the same for the points as single pixels, in target.centres,
+    // with their places (`COLLECT` and `IDENTITY` of points.frag.glsl).
+    Status beginCentres(const PickTarget& target);
+    // Binds them to the texture units that expand.vert.glsl reads, or nothing: a texture may not stay
+    // readable while the next question draws into it.
+    void bindCentres(bool bound) const;
+
     // Binds and clears what identities are drawn into: those of target.nodes, by their place there
     // (`IDENTITY` of points.frag.glsl), with the viewport that is set now. What was asked before is
     // forgotten.
@@ -32,11 +39,14 @@ class Picker {
     };
 
     Status prepare();
+    Status prepareCentres();
     std::vector<PickSample> readSamples() const;
 
     PickTarget target_;
     Framebuffer framebuffer_;
     Texture identities_, depth_;
+    Framebuffer centresFramebuffer_;
+    Texture centrePoints_, centrePlaces_, centreDepth_;
     Buffer pixels_;
     std::unique_ptr<std::remove_pointer_t<GLsync>, FenceDeleter> fence_;
 };

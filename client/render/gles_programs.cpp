@@ -91,6 +91,8 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.centreDepths = at("uCentreDepths");
     made.centrePlaces = at("uCentrePlaces");
     made.columns = at("uColumns");
+    made.centrePoints = at("uCentrePoints");
+    made.centreWindow = at("uCentreWindow");
     made.program = std::move(program);
     return made;
 }
@@ -115,6 +117,7 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform1i(centreDepths, centreDepthsUnit);
     glUniform1i(centrePlaces, centrePlacesUnit);
     glUniform1i(columns, frame.width);
+    glUniform1i(centrePoints, centrePointsUnit);
     glUniform1i(continuous, frame.continuous);
     glUniform1f(growth, frame.growth);
     glUniform2f(falloff, frame.falloffX, frame.falloffY);
@@ -145,6 +148,12 @@ void PointProgram::setNode(const RasterNode& node) const {
 void PointProgram::setIdentity(std::uint32_t node, int left, int bottom) const {
     glUniform1ui(nodeIndex, node);
     glUniform2i(window, left, bottom);
+}
+
+void PointProgram::setIdentityWindows(const PickWindow& centres, const PickWindow& written) const {
+    glUniform1i(columns, centres.width);
+    glUniform2i(centreWindow, centres.left, centres.bottom);
+    glUniform2i(window, written.left, written.bottom);
 }
 
 void PointProgram::setOctreePlace(std::uint32_t place, const ResidentNode& node) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "client/render/gles_objects.hpp"
+#include "client/render/pick.hpp"
 #include "client/render/raster_setup.hpp"
 
 #include <array>
@@ -28,6 +29,7 @@ struct PointVariant {
 // Texture units of the point programs.
 inline constexpr int octreeUnit = 1, nearestUnit = 2, centreColoursUnit = 3, centreDepthsUnit = 4,
                      centrePlacesUnit = 5;
+inline constexpr int centrePointsUnit = centreColoursUnit; // identities are written instead of colours
 
 // points.vert.glsl + points.frag.glsl with one set of defines, and where its uniforms are.
 struct PointProgram {
@@ -42,12 +44,16 @@ struct PointProgram {
     GLint radiusScale, blendFactor, nearest, hardness;
     GLint nodeIndex, window; // of programs that write identities
     GLint centreColours, centreDepths, centrePlaces, columns;
+    GLint centrePoints, centreWindow; // of both
 
     static Result<PointProgram> make(const PointVariant& variant);
     void useFor(const RasterFrame& frame) const;
     void setNode(const RasterNode& node) const;
     // Of programs that write identities: what stands for the node, and the window's lower left pixel.
     void setIdentity(std::uint32_t node, int left, int bottom) const;
+    // The second pass of delayed expansion where identities are written: the window that the centres are in,
+    // and the one that is written.
+    void setIdentityWindows(const PickWindow& centres, const PickWindow& written) const;
     // Adaptive sizes: the node's place in the octree texture.
     void setOctreePlace(std::uint32_t place, const ResidentNode& node) const;
 };

@@ -101,9 +101,17 @@ class Gles3Renderer final : public GlesRenderer {
     Status startPick(const FramePlan& plan, const PickRequest& request) override {
         STIPPLE_CHECK(checkSize(plan));
         PickTarget target = pickTarget(plan, request);
+        bool late = !target.window.empty() && expandsLate(plan, target.frame, expansionCosts);
+        if (late) {
+            STIPPLE_CHECK(picker_.beginCentres(target));
+            setPointState();
+            STIPPLE_CHECK(drawNodes(plan, target.frame, target.order,
+                                    {.collects = true, .identities = &target.centres}));
+        }
         STIPPLE_CHECK(picker_.begin(target));
         setPointState();
-        STIPPLE_CHECK(drawNodes(plan, target.frame, target.order, {.identities = &target.window}));
+        STIPPLE_CHECK(late ? drawExpandedIdentities(target)
+                           : drawNodes(plan, target.frame, target.order, {.identities = &target.window}));
         glBindVertexArray(0);
         picker_.finish(std::move(target));
         return {};
@@ -199,6 +207,20 @@ class Gles3Renderer final : public GlesRenderer {
         glDrawArrays(GL_POINTS, 0, frame.width * frame.height);
         for (int unit : {centreColoursUnit, centreDepthsUnit, centrePlacesUnit})
             bind(unit, 0);
+        return {};
+    }
+
+    // The same where identities are written; one vertex for each pixel of the centres' window.
+    Status drawExpandedIdentities(const PickTarget& target) {
+        PointVariant variant{.circle = target.frame.circle, .paraboloid = target.frame.paraboloid};
+        variant.expand = variant.identity = true;
+        STIPPLE_TRY(program, pointPrograms_.get(variant));
+        program->useFor(target.frame);
+        program->setIdentityWindows(target.centres, target.window);
+        picker_.bindCentres(true);
+        glBindVertexArray(emptyArray_.id());
+        glDrawArrays(GL_POINTS, 0, target.centres.width * target.centres.height);
+        picker_.bindCentres(false);
         return {};
     }
 

@@ -88,8 +88,20 @@ PickWindow windowOf(const RasterFrame& frame, const PickRequest& request) {
     return window;
 }
 
+// How far from the pixels that it covers a point's centre can be; a pixel more covers all rounding.
+double reachOf(const RasterFrame& frame, const Style& style) {
+    return largestPoint(frame, style) / 2 + 1;
+}
+
+PickWindow grownBy(const PickWindow& window, int pixels, const RasterFrame& frame) {
+    int left = std::max(window.left - pixels, 0), bottom = std::max(window.bottom - pixels, 0);
+    int right = std::min(window.left + window.width + pixels, frame.width);
+    int top = std::min(window.bottom + window.height + pixels, frame.height);
+    return {left, bottom, right - left, top - bottom};
+}
+
 std::vector<std::size_t> nodesAt(const FramePlan& plan, const RasterFrame& frame, const PickWindow& window) {
-    double reach = largestPoint(frame, plan.style) / 2 + 1; // a pixel more covers all rounding
+    double reach = reachOf(frame, plan.style);
     auto edge = [](double pixel, int side) { return 2 * pixel / side - 1; };
     std::array<Side, 4> sides = sidesOf(plan.view, edge(window.left - reach, plan.width),
                                         edge(window.left + window.width + reach, plan.width),
@@ -119,6 +131,8 @@ PickTarget pickTarget(const FramePlan& plan, const PickRequest& request) {
     target.window = windowOf(target.frame, request);
     if (target.window.empty())
         return target;
+    target.centres =
+        grownBy(target.window, static_cast<int>(std::ceil(reachOf(target.frame, plan.style))), target.frame);
     target.order = nodesAt(plan, target.frame, target.window);
     for (std::size_t i : target.order)
         target.nodes.push_back(plan.nodes[i]);

@@ -48,6 +48,8 @@ struct PickWindow {
 struct PickTarget {
     PickRequest request;
     PickWindow window;
+    // Where the centres are of all points that can cover a pixel of the window.
+    PickWindow centres;
     RasterFrame frame;
     // Indices of plan.nodes, in draw order, that can cover a pixel of the window: all others are left out for
     // certain, also by the largest size that the style allows.

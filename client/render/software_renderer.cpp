@@ -68,20 +68,42 @@ class CellRenderer final : public SoftwareRenderer {
             return std::nullopt;
         frame_ = target.frame;
         placeNodes(plan, target.order);
-        // Elsewhere the cells keep what they held, and nobody looks at them.
-        int top = image_.height - target.window.bottom;
-        clearRows(cells_, top - target.window.height, top);
         makeRuns();
-        // Few points: all threads draw into the first part, and the others need not be looked through.
-        workers_.run(runs_.size(), [&](std::size_t i) {
-            drawRun(target.frame, runs_[i], cells_.cells(), workers_.threads() > 1);
-        });
+        // Elsewhere the cells keep what they held, and nobody looks at them.
+        RowRange rows = rowsOf(target.window);
+        clearRows(cells_, rows.first, rows.end);
+        if (expandsLate(plan, target.frame, expansionCosts))
+            drawExpandedAt(target);
+        else
+            drawFew(target.frame, cells_);
         std::vector<PickSample> samples = samplesIn(target.window);
         clearRows(cells_, 0, image_.height); // the last picture is gone
         return nearestHit(target, samples);
     }
 
   private:
+    RowRange rowsOf(const PickWindow& window) const {
+        int end = image_.height - window.bottom;
+        return {end - window.height, end};
+    }
+
+    // What drawExpanded() draws, in the rows of the window.
+    void drawExpandedAt(const PickTarget& target) {
+        RowRange centreRows = rowsOf(target.centres), rows = rowsOf(target.window);
+        centres_.resize(image_.width, image_.height, workers_.threads());
+        clearRows(centres_, centreRows.first, centreRows.end);
+        drawFew(singlePixelFrame(target.frame), centres_);
+        expandRows(target.frame, centres(), centreRows, cells_.cells(), false);
+        for (int y = rows.first; y < rows.end; ++y)
+            nameExpandedRow(target.frame, centres(), y, cells_.cells());
+    }
+
+    // All threads draw into the first part, and the others need not be looked through.
+    void drawFew(const RasterFrame& frame, CellParts& cells) {
+        workers_.run(runs_.size(),
+                     [&](std::size_t i) { drawRun(frame, runs_[i], cells.cells(), workers_.threads() > 1); });
+    }
+
     std::vector<PickSample> samplesIn(const PickWindow& window) const {
         std::vector<PickSample> samples;
         for (int row = window.bottom; row < window.bottom + window.height; ++row) {

@@ -23,16 +23,15 @@ uniform int uHardness;
 #endif
 
 #ifdef IDENTITY
-flat in uvec2 vPoint;
-uniform uint uNode;
+flat in uvec3 vPoint;
 uniform ivec2 uWindow;                   // lower left pixel
 layout(location = 0) out uvec4 outPoint; // node, point, depth step, 1
 #else
 layout(location = 0) out vec4 outColour;
+#endif
 #ifdef COLLECT
 flat in uint vPlace;
 layout(location = 1) out uint outPlace;
-#endif
 #endif
 
 vec2 pixelCentre() {
@@ -70,9 +69,9 @@ void main() {
     gl_FragDepth = float(bentStep) * (1.0 / 16777216.0);
 #endif
 #if defined(IDENTITY) && defined(PARABOLOID)
-    outPoint = uvec4(uNode, vPoint.x, bentStep, 1u);
+    outPoint = uvec4(vPoint.xy, bentStep, 1u);
 #elif defined(IDENTITY)
-    outPoint = uvec4(uNode, vPoint, 1u);
+    outPoint = uvec4(vPoint, 1u);
 #elif defined(BLEND)
     uint nearest = uint(texelFetch(uNearest, ivec2(gl_FragCoord.xy), 0).r * 16777216.0);
     if (vBlended > nearest)

@@ -47,7 +47,8 @@ flat out uint vPlace; // expand.vert.glsl, uCentrePlaces
 flat out int vLevels;
 #endif
 #ifdef IDENTITY
-flat out uvec2 vPoint; // index in its node, depth step
+uniform uint uNode;
+flat out uvec3 vPoint; // node, index in it, depth step
 #endif
 
 float along(vec3 row, vec3 r) {
@@ -84,7 +85,7 @@ void main() {
     float d = along(uRowD, r);
     vColour = aColour;
 #ifdef IDENTITY
-    vPoint = uvec2(0u);
+    vPoint = uvec3(0u);
 #endif
 #ifdef ADAPTIVE
     int levels = levelsBelow(p);
@@ -129,7 +130,7 @@ void main() {
         size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);
     uint step = (floatBitsToUint(d) - uNearBits) >> uDepthShift;
 #ifdef IDENTITY
-    vPoint = uvec2(uint(gl_VertexID), step);
+    vPoint = uvec3(uNode, uint(gl_VertexID), step);
 #endif
 #ifdef COLLECT
     vPlace = uint(cell.x & 127) | uint(cell.y & 127) << 7 | uint(size64) << 14;

@@ -160,3 +160,96 @@ TEST_CASE("a question about the pointer takes the place of one that was not answ
     CHECK_FALSE((*gles)->pickPending());
     CHECK_FALSE((*gles)->takePick()->has_value());
 }
+
+namespace {
+
+// Scenes of delayed expansion whose points have a colour each, so that a pixel says which point it shows.
+std::vector<Scene> lateScenes() {
+    std::vector<Scene> all;
+    for (PointShape shape : {PointShape::square, PointShape::circle, PointShape::paraboloid})
+        for (PointSizeMode mode : {PointSizeMode::fixed, PointSizeMode::world, PointSizeMode::adaptive})
+            for (Projection projection : {Projection::perspective, Projection::orthographic}) {
+                Scene scene;
+                scene.nodes = randomOctree(21, 2, 2000, 12, {-5, -5, -5}, 10.0 / 4096);
+                scene.view.position = {1.2345, -17.7, 3.21};
+                scene.view.target = {0.3, 0.1, -0.2};
+                scene.view.projection = projection;
+                scene.view.halfHeight = 9;
+                scene.style.edl.enabled = false;
+                scene.style.shape = shape;
+                scene.style.sizeMode = mode;
+                scene.style.sizePixels = 7.3;
+                scene.style.sizeWorld = 0.5;
+                scene.style.sizeSpacings = 0.6;
+                scene.style.delayedExpansion = DelayedExpansion::on;
+                std::uint32_t number = 0;
+                for (TestNode& node : scene.nodes)
+                    for (TestPoint& point : node.points) {
+                        ++number;
+                        point.r = static_cast<std::uint8_t>(number & 255);
+                        point.g = static_cast<std::uint8_t>(number >> 8 & 255);
+                        point.b = static_cast<std::uint8_t>(number >> 16);
+                    }
+                all.push_back(std::move(scene));
+            }
+    return all;
+}
+
+// The number of the point that a pixel shows; 0: none.
+std::uint32_t shownAt(const Image& picture, const Style& style, int x, int y) {
+    const std::uint8_t* at = picture.rgba.data() + 4 * (y * picture.width + x);
+    bool empty = std::equal(style.background.begin(), style.background.end(), at);
+    return empty ? 0 : at[0] | std::uint32_t{at[1]} << 8 | std::uint32_t{at[2]} << 16;
+}
+
+// Picks on single pixels against the picture; counts those where drawing at once shows another point.
+template <class Draw, class Pick>
+void checkLatePicks(const Scene& scene, int count, int& otherwise, const Draw& draw, const Pick& pick) {
+    FramePlan plan = testPlan(scene.nodes, scene.view, scene.style);
+    FramePlan atOnce = plan;
+    atOnce.style.delayedExpansion = DelayedExpansion::off;
+    Image picture = draw(plan), whole = draw(atOnce);
+    TestRandom random(5);
+    for (int i = 0; i < count; ++i) {
+        int x = static_cast<int>(random.below(160)), y = static_cast<int>(random.below(120));
+        std::uint32_t shown = shownAt(picture, scene.style, x, y);
+        INFO("at " << x << ", " << y);
+        CHECK(orderOf(pick(plan, PickRequest{x + 0.5, y + 0.5, 0}), plan) == shown);
+        otherwise += shown != shownAt(whole, scene.style, x, y);
+    }
+}
+
+} // namespace
+
+TEST_CASE("with delayed expansion the software renderer picks what the picture shows", "[software]") {
+    auto renderer = SoftwareRenderer::create(2);
+    int otherwise = 0;
+    for (const Scene& scene : lateScenes())
+        checkLatePicks(
+            scene, 200, otherwise, [&](FramePlan& plan) { return renderer->render(plan); },
+            [&](const FramePlan& plan, const PickRequest& request) { return renderer->pick(plan, request); });
+    CHECK(otherwise > 50); // or the scenes would not tell one from the other
+    WARN(otherwise << " of 3600 pixels show another point than at once");
+}
+
+TEST_CASE("with delayed expansion GLES picks what the picture shows", "[gles]") {
+    auto* context = eglContext();
+    if (!context)
+        return;
+    auto gles = GlesRenderer::create();
+    REQUIRE(gles.ok());
+    int otherwise = 0;
+    for (const Scene& scene : lateScenes())
+        checkLatePicks(
+            scene, 60, otherwise, [&](FramePlan& plan) { return glesPicture(*context, **gles, plan); },
+            [&](const FramePlan& plan, const PickRequest& request) {
+                REQUIRE((*gles)->startPick(plan, request).ok());
+                for (;;) {
+                    auto answer = (*gles)->takePick();
+                    REQUIRE(answer.ok());
+                    if (*answer)
+                        return (*answer)->hit;
+                }
+            });
+    CHECK(otherwise > 10);
+}
