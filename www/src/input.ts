@@ -120,7 +120,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     canvas.addEventListener('blur', () => navigator.letGo());
 }
 
-/** Files dropped anywhere on the page are opened. `hover` says whether one is held over it. */
+/** Clouds and scenes (.json) dropped anywhere on the page are opened. `hover` says whether one is held over it. */
 export function followDrops(model: Model, hover: (isOver: boolean) => void): void {
     let depth = 0;
     const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;
@@ -140,6 +140,8 @@ export function followDrops(model: Model, hover: (isOver: boolean) => void): voi
         event.preventDefault();
         depth = 0;
         hover(false);
-        for (const file of event.dataTransfer!.files) model.openFile(file);
+        for (const file of event.dataTransfer!.files)
+            if (/\.json$/i.test(file.name)) void model.openSceneFile(file);
+            else model.openFile(file);
     });
 }

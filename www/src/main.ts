@@ -3,6 +3,7 @@ import { html, render } from 'lit';
 import { followDrops, followInput } from './input.ts';
 import { messageOf } from './messages.ts';
 import { Model } from './model.ts';
+import { fromFragment, isSceneFragment } from './scene/share_link.ts';
 import { listClouds, type CloudPage } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
 import type { App } from './ui/app.ts';
@@ -28,7 +29,21 @@ async function start(): Promise<void> {
     const app = layer.querySelector<App>('stipple-app')!;
     followDrops(model, (isOver) => (app.isDropTarget = isOver));
 
-    await openClouds(model, list);
+    addEventListener('hashchange', () => void openLinkedScene(model));
+    if (!(await openLinkedScene(model))) await openClouds(model, list);
+    else await model.takeList(list);
+}
+
+/** The scene in the address's fragment, if there is one. */
+async function openLinkedScene(model: Model): Promise<boolean> {
+    if (!isSceneFragment(location.hash)) return false;
+    try {
+        model.openScene(await fromFragment(location.hash));
+        return true;
+    } catch (error) {
+        model.notify(messageOf(error));
+        return false;
+    }
 }
 
 /** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */

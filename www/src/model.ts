@@ -1,6 +1,8 @@
 import { Measuring } from './measuring/measuring.ts';
 import { messageOf } from './messages.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
+import { mostSceneBytes, readScene } from './scene/read_scene.ts';
+import { differences, type Scene, type SceneCloud, sceneMeasurement, sceneVersion } from './scene/scene.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
 import type {
     Camera,
@@ -50,6 +52,8 @@ export class Model extends EventTarget {
     /** What was measured, and the tool in hand. */
     readonly measuring = new Measuring(this);
 
+    /** As the program has them at first. */
+    private defaults!: { style: Style; limits: Limits };
     private viewer!: Viewer;
     private lastQuestion = 0;
     private frameIsDue = false;
@@ -71,6 +75,7 @@ export class Model extends EventTarget {
         const model = new Model(canvas);
         model.viewer = await Viewer.create(canvas, () => model.wake());
         model.read();
+        model.defaults = { style: model.style, limits: model.limits };
         model.followCanvas();
         return model;
     }
@@ -206,6 +211,98 @@ export class Model extends EventTarget {
             t = duration === 0 ? 1 : Math.min(1, Math.max(0, now - start) / duration);
             this.step(() => (goesOn = this.viewer.fly(t)));
         }
+    }
+
+    // Scenes
+
+    scene(): Scene {
+        const addressOf = new Map([...this.addresses].map(([address, id]) => [id, address]));
+        const clouds = this.viewer.clouds();
+        const indexOfCloud = (id: number): number => clouds.findIndex((cloud) => cloud.id === id);
+        const items = this.measuring.items.filter((item) => item.answer ?? item.error);
+        return {
+            stipple: 'scene',
+            version: sceneVersion,
+            clouds: clouds.map(({ id, name, visible }) => {
+                const address = addressOf.get(id);
+                return { ...(address === undefined ? { file: name } : { address }), name, visible };
+            }),
+            camera: this.viewer.camera(),
+            style: differences(this.viewer.style(), this.defaults.style),
+            limits: differences(this.viewer.limits(), this.defaults.limits),
+            navigation: this.navigator.mode,
+            unit: this.measuring.unit,
+            measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
+        };
+    }
+
+    /** Shows the scene of a text; what is wrong with it is told, and leaves everything as it was. */
+    openScene(text: string): void {
+        try {
+            this.show(readScene(text));
+        } catch (error) {
+            this.notify(messageOf(error));
+        }
+        this.read();
+        this.changed();
+        this.wake();
+    }
+    async openSceneFile(file: File): Promise<void> {
+        if (file.size > mostSceneBytes) this.notify(`${file.name} is too large to be a scene.`);
+        else this.openScene(await file.text());
+    }
+
+    private show(scene: Scene): void {
+        const before = { style: this.viewer.style(), limits: this.viewer.limits() };
+        try {
+            this.viewer.setStyle({ ...this.defaults.style, ...scene.style });
+            this.viewer.setLimits({ ...this.defaults.limits, ...scene.limits });
+            this.viewer.setCamera(scene.camera); // the first that may be wrong comes before anything is closed
+        } catch (error) {
+            this.viewer.setStyle(before.style);
+            this.viewer.setLimits(before.limits);
+            throw error;
+        }
+        const ids = this.showClouds(scene.clouds);
+        this.viewer.setCamera(scene.camera); // a first cloud would be shown from its side
+        this.navigator.mode = scene.navigation;
+        this.measuring.unit = scene.unit;
+        this.measuring.replace(
+            scene.measurements.map((item) => ({
+                ...item,
+                points: item.points.map((point) => ({
+                    ...point,
+                    point: { ...point.point, cloud: ids[point.point.cloud] ?? 0 },
+                })),
+            })),
+        );
+        this.rememberSoon();
+    }
+
+    /** Closes what the scene does not have and opens the rest; the ids, 0 for a file that has to be opened by hand. */
+    private showClouds(clouds: SceneCloud[]): number[] {
+        const kept = new Map<string, number>();
+        for (const { id, name } of this.viewer.clouds()) {
+            const address = [...this.addresses].find(([, opened]) => opened === id)?.[0];
+            const isWanted = clouds.some((cloud) => (address === undefined ? cloud.file === name : cloud.address === address));
+            if (!isWanted) this.close(id);
+            else if (address === undefined) kept.set(name, id);
+        }
+        return clouds.map(({ address, file, name, visible }) => {
+            if (address !== undefined) this.openAddress(address, name);
+            const id = address === undefined ? kept.get(file!) : this.addresses.get(address);
+            if (id !== undefined) this.viewer.setVisible(id, visible);
+            else this.notify(`The scene shows a file of this machine, ${file}: open it.`);
+            return id ?? 0;
+        });
+    }
+
+    /** The picture as a PNG, in the canvas's size. */
+    async picture(): Promise<Blob> {
+        const { width, height, rgba } = this.readPixels();
+        const canvas = new OffscreenCanvas(width, height);
+        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(rgba), width, height), 0, 0);
+        return canvas.convertToBlob({ type: 'image/png' });
     }
 
     // What is under the pointer

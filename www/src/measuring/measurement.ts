@@ -1,4 +1,4 @@
-import type { MeasureAnswer, MeasureKind, MeasureRequest, PickedPoint } from '../wasm/values.ts';
+import type { MeasureAnswer, MeasureKind, MeasureRequest, PlacedPoint } from '../wasm/values.ts';
 
 /** Something that was measured: exact points of clouds, and what client/survey says of them. */
 export interface Measurement {
@@ -6,7 +6,7 @@ export interface Measurement {
     kind: MeasureKind;
     name: string;
     hidden: boolean;
-    points: PickedPoint[];
+    points: PlacedPoint[];
     /** Absent while there are too few points. */
     answer?: MeasureAnswer;
     /** Why there is no answer. */
@@ -54,6 +54,6 @@ export function obstacleOf({ kind, points }: Measurement): string | undefined {
     return undefined;
 }
 
-function isAngular(point: PickedPoint): boolean {
+function isAngular(point: PlacedPoint): boolean {
     return point.unitMeters === 0 && /deg|rad|grad/i.test(point.unit);
 }

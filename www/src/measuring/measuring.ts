@@ -1,6 +1,6 @@
 import type { Model } from '../model.ts';
 import { messageOf } from '../messages.ts';
-import type { MeasureKind, PickedPoint } from '../wasm/values.ts';
+import type { MeasureKind, PlacedPoint } from '../wasm/values.ts';
 import { kindOf, type Measurement, obstacleOf, requestOf } from './measurement.ts';
 import type { DisplayUnit } from './units.ts';
 
@@ -38,7 +38,7 @@ export class Measuring extends EventTarget {
         if (point) this.add(point);
     }
 
-    add(point: PickedPoint): void {
+    add(point: PlacedPoint): void {
         const item = this.drawn;
         if (!item) return;
         if (samePoint(item.points.at(-1), point)) return; // the second click of a double click
@@ -87,6 +87,14 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
+    /** Takes the place of what was measured. */
+    replace(items: { kind: MeasureKind; name: string; hidden: boolean; points: PlacedPoint[] }[]): void {
+        this.drawn = undefined;
+        this.items = items.map((item) => ({ id: ++this.lastId, ...item }));
+        this.items.forEach((item) => this.measure(item));
+        this.changed();
+    }
+
     rename(item: Measurement, name: string): void {
         item.name = name.trim() || item.name;
         this.changed();
@@ -105,7 +113,7 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
-    private async pick(x: number, y: number): Promise<PickedPoint | null> {
+    private async pick(x: number, y: number): Promise<PlacedPoint | null> {
         try {
             return await this.model.pick(x, y);
         } catch (error) {
@@ -132,7 +140,7 @@ export class Measuring extends EventTarget {
     }
 }
 
-function samePoint(a: PickedPoint | undefined, b: PickedPoint): boolean {
+function samePoint(a: PlacedPoint | undefined, b: PlacedPoint): boolean {
     return (
         a !== undefined &&
         a.point.cloud === b.point.cloud &&

@@ -4,6 +4,7 @@ import './look_panel.ts';
 import './measure_overlay.ts';
 import './measure_panel.ts';
 import './point_panel.ts';
+import './scene_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
 
@@ -264,6 +265,7 @@ export class App extends ModelElement {
                 <stipple-clouds .model=${this.model}></stipple-clouds>
                 <stipple-measure .model=${this.model}></stipple-measure>
                 <stipple-look .model=${this.model}></stipple-look>
+                <stipple-scene .model=${this.model}></stipple-scene>
             </div>
         </section>`;
     }

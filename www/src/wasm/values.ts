@@ -122,14 +122,11 @@ export interface CloudState {
     classes?: CloudClass[];
 }
 
-/** A point of a cloud, exactly as its file has it. */
-export interface PickedPoint {
+/** Where a point of a cloud is, exactly as its file has it, and what measuring from it needs. */
+export interface PlacedPoint {
     integers: Vector;
     position: Vector;
-    values: Record<string, number | number[]>;
     point: { cloud: number; node: string; index: number };
-    pixelsAway: number;
-    distance: number;
     cloudName: string;
     crs: string;
     epsg: number | null;
@@ -142,6 +139,13 @@ export interface PickedPoint {
     offset: Vector;
     /** How far apart points of its node are. */
     spacing: number;
+}
+
+/** A point that was asked about, with all its attributes. */
+export interface PickedPoint extends PlacedPoint {
+    values: Record<string, number | number[]>;
+    pixelsAway: number;
+    distance: number;
 }
 
 export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle';

@@ -1,0 +1,110 @@
+import { kindsOfMeasurement, kindOf } from '../measuring/measurement.ts';
+import { displayUnits } from '../measuring/units.ts';
+import type { Camera, Limits, PlacedPoint, Style } from '../wasm/values.ts';
+import { FieldReader } from './fields.ts';
+import { type Scene, type SceneCloud, type SceneMeasurement, sceneVersion } from './scene.ts';
+
+export const mostSceneBytes = 16 << 20;
+
+const isWhole = (value: number): boolean => Number.isSafeInteger(value);
+
+/**
+ * The scene of a text. Throws a sentence that names the first field that is wrong. Camera, style and limits are objects
+ * here; the program says what is wrong in them when they are set.
+ */
+export function readScene(text: string): Scene {
+    if (text.length > mostSceneBytes) throw new Error(`The scene has more than ${mostSceneBytes >> 20} MiB.`);
+    let value: unknown;
+    try {
+        value = JSON.parse(text);
+    } catch (error) {
+        throw new Error(`This is no scene: it is not JSON (${error instanceof Error ? error.message : String(error)}).`);
+    }
+    const fields = FieldReader.of(value, '');
+    if (fields.text('stipple', '') !== 'scene') throw new Error('This JSON is not a scene of Stipple.');
+    const version = fields.number('version', 0, isWhole);
+    if (version > sceneVersion)
+        throw new Error(`The scene is of version ${version}; this page reads up to ${sceneVersion}. Use a newer page.`);
+    const scene: Scene = {
+        stipple: 'scene',
+        version,
+        clouds: fields.list('clouds', 10_000, readCloud),
+        camera: fields.object('camera') as unknown as Camera,
+        style: fields.object('style') as Partial<Style>,
+        limits: fields.object('limits') as Partial<Limits>,
+        navigation: fields.oneOf('navigation', ['orbit', 'earth', 'fly'], 'orbit'),
+        unit: fields.oneOf('unit', displayUnits.map(([unit]) => unit), 'stored'),
+        measurements: fields.list('measurements', 10_000, readMeasurement),
+    };
+    fields.finish();
+    return scene;
+}
+
+function readCloud(value: unknown, path: string): SceneCloud {
+    const fields = FieldReader.of(value, path);
+    const address = fields.text('address', '', 4000), file = fields.text('file', '');
+    const cloud: SceneCloud = {
+        ...(address && { address: checkedAddress(address, path) }),
+        ...(file && { file }),
+        name: fields.text('name', address || file),
+        visible: fields.flag('visible', true),
+    };
+    if (!address === !file) throw new Error(`${path} must have an address, or the name of a file.`);
+    fields.finish();
+    return cloud;
+}
+
+/** Only what a page may fetch. */
+function checkedAddress(address: string, path: string): string {
+    let protocol = '';
+    try {
+        ({ protocol } = new URL(address, document.baseURI));
+    } catch {
+        // told below
+    }
+    if (protocol !== 'http:' && protocol !== 'https:')
+        throw new Error(`${path}.address must be an address that begins with http or https, or a path.`);
+    return address;
+}
+
+function readMeasurement(value: unknown, path: string): SceneMeasurement {
+    const fields = FieldReader.of(value, path);
+    const kind = fields.oneOf('kind', kindsOfMeasurement.map((known) => known.kind));
+    const measurement: SceneMeasurement = {
+        kind,
+        name: fields.text('name', kindOf(kind).label),
+        hidden: fields.flag('hidden', false),
+        points: fields.list('points', 10_000, readPoint),
+    };
+    fields.finish();
+    const { least, points } = kindOf(kind), count = measurement.points.length;
+    if (count < least || (points !== undefined && count > points))
+        throw new Error(`${path} has ${count} points, which are too ${count < least ? 'few' : 'many'} for its kind, ${kind}.`);
+    return measurement;
+}
+
+function readPoint(value: unknown, path: string): PlacedPoint {
+    const fields = FieldReader.of(value, path);
+    const identity = FieldReader.of(fields.object('point'), `${path}.point`);
+    const point: PlacedPoint = {
+        integers: fields.vector('integers', isWhole),
+        position: fields.vector('position'),
+        point: {
+            cloud: identity.number('cloud', -1, isWhole),
+            node: identity.text('node', ''),
+            index: identity.number('index', 0, isWhole),
+        },
+        cloudName: fields.text('cloudName', ''),
+        crs: fields.text('crs', ''),
+        epsg: fields.number('epsg', 0, isWhole) || null,
+        unit: fields.text('unit', ''),
+        unitMeters: fields.number('unitMeters', 0, (metres) => metres >= 0),
+        geocentric: fields.flag('geocentric', false),
+        scale: fields.vector('scale', (step) => step > 0),
+        offset: fields.vector('offset'),
+        spacing: fields.number('spacing', 0, (spacing) => spacing >= 0),
+    };
+    identity.finish();
+    fields.finish();
+    return point;
+}
