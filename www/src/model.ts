@@ -1,3 +1,4 @@
+import { Clipping } from './clipping/clipping.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { messageOf } from './messages.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
@@ -49,6 +50,7 @@ export class Model extends EventTarget {
 
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
+    readonly clipping = new Clipping(this);
     /** What was measured, and the tool in hand. */
     readonly measuring = new Measuring(this);
 

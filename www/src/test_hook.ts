@@ -14,6 +14,7 @@ export interface TestHook {
     setCamera(camera: object): void;
     camera(): object;
     setStyle(style: object): void;
+    style(): object;
     setLimits(limits: object): void;
     /** The point shown at a place of the canvas, in CSS pixels; null if there is none. */
     pick(x: number, y: number, radius?: number): Promise<PickedPoint | null>;
@@ -36,6 +37,7 @@ export function installTestHook(model: Model): void {
         setCamera: (camera) => model.changeCamera(camera),
         camera: () => model.readCamera(),
         setStyle: (style) => model.changeStyle(style),
+        style: () => model.style,
         setLimits: (limits) => model.changeLimits(limits),
         pick: (x, y, radius) => model.pick(x, y, radius),
         measurements: () => model.measuring.items,

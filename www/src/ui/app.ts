@@ -1,3 +1,5 @@
+import './clip_overlay.ts';
+import './clip_panel.ts';
 import './cloud_list.ts';
 import './counters_panel.ts';
 import './look_panel.ts';
@@ -37,7 +39,7 @@ export class App extends ModelElement {
                 padding: 12px;
                 gap: 12px;
             }
-            :host > :not(stipple-measure-overlay) {
+            :host > :not(stipple-measure-overlay, stipple-clip-overlay) {
                 pointer-events: auto;
             }
             .panel {
@@ -217,7 +219,8 @@ export class App extends ModelElement {
     }
 
     override render(): TemplateResult {
-        return html`<stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
+        return html`<stipple-clip-overlay .model=${this.model}></stipple-clip-overlay>
+            <stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
             ${this.renderProgress()} ${this.renderControls()}
             ${this.countersAreOpen
                 ? html`<aside class="panel counters" aria-label="Counters">
@@ -264,6 +267,7 @@ export class App extends ModelElement {
             <div class="body" id="body" ?hidden=${!this.panelIsOpen}>
                 <stipple-clouds .model=${this.model}></stipple-clouds>
                 <stipple-measure .model=${this.model}></stipple-measure>
+                <stipple-clip .model=${this.model}></stipple-clip>
                 <stipple-look .model=${this.model}></stipple-look>
                 <stipple-scene .model=${this.model}></stipple-scene>
             </div>

@@ -281,7 +281,7 @@ export class ColourPanel extends ModelElement {
     private renderClip(): TemplateResult {
         const { clipBoxes } = this.model.style;
         return html`<fieldset>
-            <legend>Clip boxes</legend>
+            <legend>Clip boxes as JSON</legend>
             <textarea
                 aria-label="Clip boxes"
                 spellcheck="false"

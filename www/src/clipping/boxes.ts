@@ -1,0 +1,91 @@
+import type { ClipBox, Vector } from '../wasm/values.ts';
+
+/** Clip boxes as a person edits them. Values, never changed: each step gives another box. World units, degrees. */
+
+const unturned: [Vector, Vector, Vector] = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+];
+/** A side is never shorter than this part of what it was. */
+const leastPart = 1e-3;
+
+export function axesOf(box: ClipBox): [Vector, Vector, Vector] {
+    return box.axes ?? unturned;
+}
+
+/** How far it is turned about z, counter-clockwise, -180..180; undefined if it is turned in another way. */
+export function headingOf(box: ClipBox): number | undefined {
+    const [x, , z] = axesOf(box);
+    if (Math.hypot(z[0], z[1], z[2] - 1) > 1e-6) return undefined;
+    return (Math.atan2(x[1], x[0]) * 180) / Math.PI;
+}
+
+export function withHeading(box: ClipBox, degrees: number): ClipBox {
+    const radians = (degrees * Math.PI) / 180, c = Math.cos(radians), s = Math.sin(radians);
+    const { rotation: _, ...rest } = box;
+    return {
+        ...rest,
+        axes: [
+            [c, s, 0],
+            [-s, c, 0],
+            [0, 0, 1],
+        ],
+    };
+}
+
+/** The side along `axis` at its end `sign` (1 or -1) goes outwards by `way`; the opposite side stays. */
+export function withFaceMoved(box: ClipBox, axis: number, sign: number, way: number): ClipBox {
+    const half = box.halfSize[axis]!, next = Math.max(half * leastPart, half + way / 2);
+    const along = axesOf(box)[axis]!;
+    return {
+        ...box,
+        halfSize: replaced(box.halfSize, axis, next),
+        centre: box.centre.map((value, i) => value + along[i]! * sign * (next - half)) as Vector,
+    };
+}
+
+export function withCentre(box: ClipBox, centre: Vector): ClipBox {
+    return { ...box, centre };
+}
+
+/** `size`: full, along its own axes. */
+export function withSize(box: ClipBox, axis: number, size: number): ClipBox {
+    return { ...box, halfSize: replaced(box.halfSize, axis, size / 2) };
+}
+
+/** A place by its coordinates along the box's axes from its centre. */
+export function placeIn(box: ClipBox, along: Vector): Vector {
+    const axes = axesOf(box);
+    return box.centre.map(
+        (value, i) => value + along[0] * axes[0][i]! + along[1] * axes[1][i]! + along[2] * axes[2][i]!,
+    ) as Vector;
+}
+
+/** The eight corners, x running fastest, and the twelve edges between them. */
+export function cornersOf(box: ClipBox): Vector[] {
+    const [x, y, z] = box.halfSize;
+    return Array.from({ length: 8 }, (_, i) =>
+        placeIn(box, [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]),
+    );
+}
+export const edges: [number, number][] = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((corner) =>
+    [1, 2, 4].filter((bit) => !(corner & bit)).map((bit): [number, number] => [corner, corner | bit]),
+);
+
+/** Where the server's points inside it are (docs/API.md); undefined where it is turned in a way that has no address. */
+export function pointsAddress(apiOfCloud: string, box: ClipBox, format: string): string | undefined {
+    const heading = headingOf(box);
+    if (heading === undefined) return undefined;
+    const query = new URLSearchParams({
+        center: box.centre.join(','),
+        size: box.halfSize.map((half) => 2 * half).join(','),
+        rotation: String(heading),
+        format,
+    });
+    return `${apiOfCloud}/points?${query}`;
+}
+
+function replaced(vector: Vector, axis: number, value: number): Vector {
+    return vector.map((old, i) => (i === axis ? value : old)) as Vector;
+}

@@ -1,0 +1,152 @@
+import { css, html, type TemplateResult } from 'lit';
+
+import { headingOf, pointsAddress, withCentre, withHeading, withSize } from '../clipping/boxes.ts';
+import type { ClipBox, Vector } from '../wasm/values.ts';
+import { select } from './fields.ts';
+import { ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+const modes: [ClipBox['mode'], string][] = [
+    ['hideOutside', 'Hide outside'],
+    ['hideInside', 'Hide inside'],
+    ['highlight', 'Highlight'],
+];
+const formats = ['laz', 'las', 'ply', 'csv'];
+
+/** Clip boxes by number: mode, centre, size, heading; and the points inside as files. */
+export class ClipPanel extends ModelElement {
+    static override styles = [
+        controlStyles,
+        css`
+            ul {
+                list-style: none;
+                margin: 0.6rem 0 0;
+                padding: 0;
+                display: grid;
+                gap: 0.6rem;
+            }
+            li {
+                border: 1px solid var(--line);
+                border-radius: 8px;
+                padding: 0.4rem 0.6rem 0.6rem;
+            }
+            li.selected {
+                border-color: var(--accent);
+            }
+            .head {
+                display: grid;
+                grid-template-columns: 1fr auto auto;
+                align-items: center;
+                gap: 0.4rem;
+            }
+            .numbers {
+                display: grid;
+                grid-template-columns: 4rem repeat(3, 1fr);
+                align-items: center;
+                gap: 0.3rem;
+                margin-top: 0.4rem;
+                font-size: 0.82rem;
+            }
+            .numbers input {
+                width: 100%;
+                min-width: 0;
+                font: inherit;
+                color: inherit;
+                background: var(--raised);
+                border: 1px solid var(--line);
+                border-radius: 5px;
+                padding: 0.2rem 0.3rem;
+            }
+            .files {
+                margin: 0.5rem 0 0;
+                font-size: 0.82rem;
+                color: var(--muted);
+            }
+            .files a {
+                color: var(--accent);
+                margin-left: 0.4rem;
+            }
+            .add {
+                width: 100%;
+            }
+        `,
+    ];
+
+    override render(): TemplateResult {
+        const { clipping } = this.model;
+        return html`<fieldset>
+            <legend>Clip boxes</legend>
+            <button class="add" @click=${() => clipping.add()}>New box</button>
+            <ul>
+                ${clipping.boxes.map((box, index) => this.renderBox(box, index))}
+            </ul>
+        </fieldset>`;
+    }
+
+    private renderBox(box: ClipBox, index: number): TemplateResult {
+        const { clipping } = this.model;
+        const change = (next: ClipBox): void => clipping.change(index, next);
+        const name = `Box ${index + 1}`, heading = headingOf(box);
+        return html`<li class=${clipping.selected === index ? 'selected' : ''} data-box=${index}>
+            <div class="head">
+                <strong>${name}</strong>
+                <button
+                    aria-pressed=${clipping.selected === index}
+                    aria-label=${`Edit ${name}`}
+                    @click=${() => clipping.select(index)}
+                >
+                    Handles
+                </button>
+                <button aria-label=${`Delete ${name}`} @click=${() => clipping.remove(index)}>✕</button>
+            </div>
+            ${select(`Mode`, box.mode, modes, (mode) => change({ ...box, mode }))}
+            ${this.renderNumbers(`Centre`, name, box.centre, (axis, value) =>
+                change(withCentre(box, box.centre.map((old, at) => (at === axis ? value : old)) as Vector)),
+            )}
+            ${this.renderNumbers(`Size`, name, box.halfSize.map((half) => 2 * half), (axis, value) =>
+                change(withSize(box, axis, value)),
+            )}
+            ${heading === undefined
+                ? html`<p class="files">It is turned about more than z.</p>`
+                : this.renderNumbers(`Heading`, name, [heading], (_, value) => change(withHeading(box, value)))}
+            ${clipping.apisOfClouds().map(({ name: cloud, api }) => this.renderFiles(cloud, api, box))}
+        </li>`;
+    }
+
+    private renderNumbers(
+        label: string,
+        of: string,
+        values: number[],
+        change: (axis: number, value: number) => void,
+    ): TemplateResult {
+        return html`<div class="numbers">
+            <span>${label}</span>
+            ${values.map(
+                (value, axis) =>
+                    html`<input
+                        type="number"
+                        step="any"
+                        aria-label=${`${label} ${values.length > 1 ? 'xyz'[axis] : ''} of ${of}`.replace('  ', ' ')}
+                        .value=${String(Number(value.toPrecision(12)))}
+                        @change=${(event: Event) => {
+                            const input = event.target as HTMLInputElement, number = input.valueAsNumber;
+                            if (Number.isFinite(number)) change(axis, number);
+                            input.value = String(Number(value.toPrecision(12))); // shown anew if it was not taken
+                            this.requestUpdate();
+                        }}
+                    />`,
+            )}
+        </div>`;
+    }
+
+    /** All points inside, whatever the picture shows of them. */
+    private renderFiles(cloud: string, api: string, box: ClipBox): TemplateResult | string {
+        const links = formats.flatMap((format) => {
+            const address = pointsAddress(api, box, format);
+            return address === undefined ? [] : html`<a href=${address} download>${format.toUpperCase()}</a>`;
+        });
+        return links.length > 0 ? html`<p class="files">${cloud}, inside: ${links}</p>` : '';
+    }
+}
+
+customElements.define('stipple-clip', ClipPanel);
