@@ -50,6 +50,7 @@ describe('clip boxes', () => {
     test('a new box hides what is outside it, and the modes do what they say', async () => {
         const whole = coverage(await readPixels(page));
         await page.getByRole('button', { name: 'New box' }).click();
+        await page.locator('[data-box="0"]').waitFor();
         await settle(page);
         const inside = coverage(await readPixels(page));
         assert.ok(inside > 0 && inside < 0.5 * whole, `${inside} of ${whole}`);

@@ -13,14 +13,17 @@ export class Clipping {
         return this.model.style.clipBoxes;
     }
 
-    /** A box around what the camera looks at, a third as high as the view there. */
-    add(): void {
+    /** A box around the point in the middle of the picture, or what the camera turns about; a third as high as the view there. */
+    async add(): Promise<void> {
+        const { canvas } = this.model;
+        const middle = await this.model.place(canvas.clientWidth / 2, canvas.clientHeight / 2, 60);
         const { target, position, projection, orthoHeight, fovYDegrees } = this.model.readCamera();
-        const distance = Math.hypot(...target.map((value, axis) => value - position[axis]!));
+        const centre = middle ?? target;
+        const distance = Math.hypot(...centre.map((value, axis) => value - position[axis]!));
         const height =
             projection === 'orthographic' ? orthoHeight : 2 * distance * Math.tan((fovYDegrees * Math.PI) / 360);
         const half = height / 6;
-        const box = withHeading({ mode: 'hideOutside', centre: target, halfSize: [half, half, half] }, 0);
+        const box = withHeading({ mode: 'hideOutside', centre, halfSize: [half, half, half] }, 0);
         this.selected = this.boxes.length;
         this.set([...this.boxes, box]);
     }

@@ -41,11 +41,14 @@ export class ClipPanel extends ModelElement {
             }
             .numbers {
                 display: grid;
-                grid-template-columns: 4rem repeat(3, 1fr);
+                grid-template-columns: 3.4rem repeat(3, 1fr);
                 align-items: center;
                 gap: 0.3rem;
                 margin-top: 0.4rem;
-                font-size: 0.82rem;
+                font-size: 0.78rem;
+            }
+            .numbers input::-webkit-inner-spin-button {
+                appearance: none;
             }
             .numbers input {
                 width: 100%;
@@ -76,7 +79,7 @@ export class ClipPanel extends ModelElement {
         const { clipping } = this.model;
         return html`<fieldset>
             <legend>Clip boxes</legend>
-            <button class="add" @click=${() => clipping.add()}>New box</button>
+            <button class="add" @click=${() => void clipping.add()}>New box</button>
             <ul>
                 ${clipping.boxes.map((box, index) => this.renderBox(box, index))}
             </ul>
@@ -126,6 +129,7 @@ export class ClipPanel extends ModelElement {
                     html`<input
                         type="number"
                         step="any"
+                        title=${String(value)}
                         aria-label=${`${label} ${values.length > 1 ? 'xyz'[axis] : ''} of ${of}`.replace('  ', ' ')}
                         .value=${String(Number(value.toPrecision(12)))}
                         @change=${(event: Event) => {
