@@ -61,7 +61,7 @@ struct Style : ColourStyle {
     double sizeWorld = 0.1; // diameter in world units, world mode
     // Diameter in spacings, modes spacing (of the target; without continuous detail the mode is as fixed) and
     // adaptive.
-    double sizeSpacings = 1.5;
+    double sizeSpacings = 2;
     double minSizePixels = 1, maxSizePixels = 64;
     PointShape shape = PointShape::circle;
     Splats splats;
