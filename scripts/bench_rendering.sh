@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Measures time against error of every way of drawing (`stipple bench`): towns of 1 and 5 million points, and scans given to
 # it. Needs the program that scripts/test.sh or scripts/demo.sh builds. Works in build/bench_rendering (WORK sets another
-# folder), where clouds and reference pictures stay for the next time. The report is report.html there.
+# folder), where clouds and reference pictures stay for the next time. The report is report.html there: time against error of
+# all modes and budgets with the line that none beats, a chart for each group (detail, shapes and splats, delayed expansion, skips),
+# and a table of modes against others, each skip off against on; report.json and frames.csv have the same.
 #
 #   scripts/bench_rendering.sh [SCAN...] [-- OPTION...]
 #

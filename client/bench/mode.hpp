@@ -28,13 +28,20 @@ struct Mode {
     // Hides what lies outside a box in the middle of the cloud, this part of it long along each axis and
     // turned by 30 degrees about z; 0: no box.
     double clipPart = 0;
+    // Modes of one group are a chart of the report: "skips". Empty: none.
+    std::string group;
+    // The mode that it is compared with in numbers, in the same group. Empty: none.
+    std::string against;
 };
 
 // A new way to draw is a line in mode.cpp.
 const std::vector<Mode>& builtInModes();
 
 // [{"name": …, "about": …, "style": {…}, "limits": {…}, "backend": "software" or "gles", "sweep": true,
-//   "worldSizeSpacings": 1}, …]; all but the name may be absent. Errors: invalidArgument, naming the field.
+//   "worldSizeSpacings": 1, "clipPart": 0.5, "group": "skips", "against": "default", "without": ["unseen"]},
+//   …]; all
+// but the name may be absent. "without": what is not skipped (client/core/skips.hpp). Errors:
+// invalidArgument, naming the field.
 Result<std::vector<Mode>> modesFromJson(const nlohmann::json& json);
 nlohmann::json toJson(const Mode& mode);
 const char* backendName(headless::Backend backend);

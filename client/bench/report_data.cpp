@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace stipple::bench {
 namespace {
 
@@ -66,6 +68,28 @@ json toJson(const Summary& s) {
             {"popping", s.popping}};
 }
 
+// null where the other mode has nothing to divide by.
+json quotient(double value) {
+    return std::isfinite(value) ? json(value) : json(nullptr);
+}
+
+json toJson(const Comparison& c) {
+    return {{"cloud", c.cloud},
+            {"mode", c.mode},
+            {"against", c.against},
+            {"group", c.group},
+            {"budget", c.budget},
+            {"drawSeconds", quotient(c.drawSeconds)},
+            {"selectSeconds", quotient(c.selectSeconds)},
+            {"nodesDrawn", quotient(c.nodesDrawn)},
+            {"pointsDrawn", quotient(c.pointsDrawn)},
+            {"bytesFetched", quotient(c.bytesFetched)},
+            {"meanError", c.meanError},
+            {"ssim", c.ssim},
+            {"flip", c.flip},
+            {"holeShare", c.holes}};
+}
+
 template <class T>
 json listOf(const std::vector<T>& items) {
     json list = json::array();
@@ -109,6 +133,7 @@ json toJson(const BenchResult& result) {
             {"modes", listOf(result.modes)},
             {"clouds", clouds},
             {"summaries", listOf(summarise(result.runs))},
+            {"comparisons", listOf(compare(summarise(result.runs), result.modes))},
             {"runs", runs}};
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 
 namespace stipple::bench {
 namespace {
@@ -148,6 +149,56 @@ std::string charts(const std::vector<Summary>& summaries) {
     return html + "</div>\n";
 }
 
+// The modes of each group, with those that they are compared with.
+std::string groupCharts(const std::vector<Summary>& summaries, const std::vector<Mode>& modes) {
+    std::vector<std::string> groups;
+    for (const Mode& mode : modes)
+        if (!mode.group.empty() && std::find(groups.begin(), groups.end(), mode.group) == groups.end())
+            groups.push_back(mode.group);
+    std::string html = "<div class=\"charts\">\n";
+    for (const std::string& group : groups) {
+        auto belongs = [&](const std::string& name) {
+            return std::any_of(modes.begin(), modes.end(), [&](const Mode& mode) {
+                return mode.group == group && (mode.name == name || mode.against == name);
+            });
+        };
+        std::vector<Summary> members;
+        std::copy_if(summaries.begin(), summaries.end(), std::back_inserter(members),
+                     [&](const Summary& s) { return belongs(s.mode); });
+        Chart chart = summaryChart(
+            members, [](const Summary& s) { return s.drawSeconds * 1e3; },
+            [](const Summary& s) { return s.meanError / 2.55; });
+        chart.title = cat("Time against mean error: ", group);
+        chart.xLabel = "draw, ms";
+        chart.yLabel = "mean error, %";
+        chart.logX = chart.logY = true;
+        html += svgOf(chart);
+    }
+    return html + "</div>\n";
+}
+
+std::string comparisonTable(const std::vector<Comparison>& comparisons) {
+    if (comparisons.empty())
+        return "";
+    std::string html =
+        "<h3>One mode against another</h3>\n<p>Of the first, as part of the second's: 1 is the same. "
+        "Errors: the first's less the second's.</p>\n"
+        "<div class=\"scroll\"><table>\n<tr><th>mode</th><th class=\"text\">against</th><th>budget</th>"
+        "<th>draw time</th><th>select time</th><th>nodes drawn</th><th>points drawn</th><th>bytes</th>"
+        "<th>mean error, %</th><th>SSIM</th><th>holes, %</th></tr>\n";
+    for (const Comparison& c : comparisons) {
+        html += cat("<tr><td>", escaped(c.mode), "</td><td class=\"text\">", escaped(c.against), "</td><td>",
+                    millions(double(c.budget)), "</td>");
+        for (const std::string& cell :
+             {number(c.drawSeconds, "%.3f"), number(c.selectSeconds, "%.3f"), number(c.nodesDrawn, "%.3f"),
+              number(c.pointsDrawn, "%.3f"), number(c.bytesFetched, "%.3f"),
+              number(c.meanError / 2.55, "%+.4f"), number(c.ssim, "%+.5f"), number(c.holes * 100, "%+.3f")})
+            html += cat("<td>", cell, "</td>");
+        html += "</tr>\n";
+    }
+    return html + "</table></div>\n";
+}
+
 // Of each path a chart: error along the frames, a series for each mode at its last budget.
 std::string pathCharts(const BenchResult& result, const CloudResult& cloud) {
     std::string html = "<div class=\"charts\">\n";
@@ -195,7 +246,9 @@ Result<std::string> cloudSection(const BenchResult& result, const CloudResult& c
     std::string html =
         cat("<h2>", escaped(cloud.name), "</h2>\n<p>", cloud.points, " points; ", cloud.paths.size(),
             " paths. Means over all their frames; times are medians.</p>\n");
-    html += charts(summaries) + summaryTable(summaries) + pathCharts(result, cloud);
+    html += charts(summaries) + groupCharts(summaries, result.modes) +
+            comparisonTable(compare(summaries, result.modes)) + summaryTable(summaries) +
+            pathCharts(result, cloud);
     html += "<h3>Pictures</h3>\n";
     for (const SamplePictures& p : result.pictures) {
         if (p.cloud != cloud.name)

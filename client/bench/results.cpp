@@ -73,4 +73,27 @@ std::vector<Summary> summarise(const std::vector<Run>& runs) {
     return summaries;
 }
 
+std::vector<Comparison> compare(const std::vector<Summary>& summaries, const std::vector<Mode>& modes) {
+    auto find = [&](const Summary& like, const std::string& mode) {
+        return std::find_if(summaries.begin(), summaries.end(), [&](const Summary& s) {
+            return s.cloud == like.cloud && s.mode == mode && s.budget == like.budget;
+        });
+    };
+    std::vector<Comparison> found;
+    for (const Summary& s : summaries) {
+        auto mode = std::find_if(modes.begin(), modes.end(), [&](const Mode& m) { return m.name == s.mode; });
+        if (mode == modes.end() || mode->against.empty())
+            continue;
+        auto other = find(s, mode->against);
+        if (other == summaries.end())
+            continue;
+        found.push_back({s.cloud, s.mode, mode->against, mode->group, s.budget,
+                         s.drawSeconds / other->drawSeconds, s.selectSeconds / other->selectSeconds,
+                         s.nodesDrawn / other->nodesDrawn, s.pointsDrawn / other->pointsDrawn,
+                         s.bytesFetched / other->bytesFetched, s.meanError - other->meanError,
+                         s.ssim - other->ssim, s.flip - other->flip, s.holes - other->holes});
+    }
+    return found;
+}
+
 } // namespace stipple::bench

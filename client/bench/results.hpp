@@ -85,4 +85,15 @@ struct Summary {
 // In the order of the runs.
 std::vector<Summary> summarise(const std::vector<Run>& runs);
 
+// A mode against the one that it names (Mode::against), of the same cloud and, where both sweep, the same
+// budget: quotients of times, counts and bytes (NaN where the other has none), differences of errors.
+struct Comparison {
+    std::string cloud, mode, against, group;
+    std::uint64_t budget = 0;
+    double drawSeconds = 1, selectSeconds = 1, nodesDrawn = 1, pointsDrawn = 1, bytesFetched = 1;
+    double meanError = 0, ssim = 0, flip = 0, holes = 0;
+};
+// In the order of the summaries; pairs of which one was not run are left out.
+std::vector<Comparison> compare(const std::vector<Summary>& summaries, const std::vector<Mode>& modes);
+
 } // namespace stipple::bench

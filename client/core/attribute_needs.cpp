@@ -61,6 +61,16 @@ AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata) 
     return needs;
 }
 
+AttributeNeeds needsOfAll(const ColourStyle& style, const CloudMetadata& metadata) {
+    AttributeNeeds needs = needsOf(style, metadata);
+    std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
+    needs.blocks.clear();
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        if (!blocks[b].isExactColour)
+            needs.blocks.push_back(static_cast<int>(b));
+    return needs;
+}
+
 bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata) {
     auto statisticsOf = [&](int attribute) -> const AttributeStatistics* {
         auto at = static_cast<std::size_t>(attribute);

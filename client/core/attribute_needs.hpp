@@ -18,6 +18,8 @@ struct AttributeNeeds {
     friend bool operator==(const AttributeNeeds&, const AttributeNeeds&) = default;
 };
 AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata);
+// The same with every attribute of the cloud.
+AttributeNeeds needsOfAll(const ColourStyle& style, const CloudMetadata& metadata);
 
 // The cloud's statistics say that filters and hidden classes hide every point.
 bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata);

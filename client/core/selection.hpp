@@ -23,6 +23,7 @@
 #include "client/core/frame_plan.hpp"
 #include "client/core/hierarchy.hpp"
 #include "client/core/priority_weights.hpp"
+#include "client/core/skips.hpp"
 
 #include <cstdint>
 #include <span>
@@ -52,6 +53,7 @@ struct SelectionInput {
     PriorityWeights weights;          // discrete detail
     double detailPixels =
         0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
+    Skips skips;
 };
 
 struct SelectedNode {

@@ -17,6 +17,8 @@ Sight SelectionBuilder::sightOf(const HierarchyNode& node, Sight parent) {
     Sight sight = parent;
     if (parent != Sight::inside) {
         sight = frustum_.sightOf(node.geometry.box);
+        if (sight == Sight::outside && !input_.skips.unseen)
+            sight = Sight::crossing;
         counters().nodesOutsideFrustum += sight == Sight::outside;
     }
     bool clipped = sight != Sight::outside && isClipped(node.geometry.box);
@@ -27,6 +29,8 @@ Sight SelectionBuilder::sightOf(const HierarchyNode& node, Sight parent) {
 bool SelectionBuilder::choose(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,
                               bool ancestorsDrawn) {
     const NodeResidency& residency = input_.clouds[cloud].residency[node];
+    if (!input_.skips.tooFine)
+        points = input_.clouds[cloud].hierarchy->node(node).entry.pointCount;
     SelectedNode selected{cloud, node, pixels, points, 0};
     std::uint32_t here = std::min(points, residency.points);
     if (ancestorsDrawn)

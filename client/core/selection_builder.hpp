@@ -39,7 +39,7 @@ class SelectionBuilder {
             if (!((entry.childMask >> c) & 1))
                 continue;
             NodeGeometry geometry = hierarchy.geometryOf(entry.key.child(c));
-            if (frustum_.intersects(geometry.box) && !isClipped(geometry.box))
+            if (mayShow(geometry.box) && !isClipped(geometry.box))
                 largest = std::max(largest, sizeOf(geometry));
         }
         if (largest >= 0 && largest >= leastSize)
@@ -49,7 +49,10 @@ class SelectionBuilder {
     Selection finish();
 
   private:
-    bool isClipped(const BoxD& box) const { return input_.clips && input_.clips->clipVerdict(box).hidden; }
+    bool mayShow(const BoxD& box) const { return !input_.skips.unseen || frustum_.intersects(box); }
+    bool isClipped(const BoxD& box) const {
+        return input_.skips.clipped && input_.clips && input_.clips->clipVerdict(box).hidden;
+    }
     void want(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,
               std::uint32_t here);
     void addChunk(const WantedChunk& chunk);

@@ -165,7 +165,7 @@ class Session final : public ViewSession {
         for (auto& [id, cloud] : loading_.clouds()) {
             if (!shown(cloud))
                 continue;
-            if (hidesAll(style_, *cloud.opened.metadata)) {
+            if (limits_.skips.hidden && hidesAll(style_, *cloud.opened.metadata)) {
                 hiddenNodes_ += cloud.hierarchy.size();
                 continue;
             }
@@ -187,6 +187,7 @@ class Session final : public ViewSession {
         input.weights = limits_.weights;
         input.detailPixels = isContinuous ? style_.detail.spacingPixels * coarser : 0;
         input.clips = clips_.hidesPoints() ? &clips_ : nullptr;
+        input.skips = limits_.skips;
         selection_ = select(input);
         selection_.counters.coarserForTime = coarser;
         selection_.counters.complete &= !loading_.anyOpening();
@@ -209,7 +210,10 @@ class Session final : public ViewSession {
     // What the style wants of each cloud. Where that changes, what is drawable does too.
     void updateNeeds() {
         for (auto& [id, cloud] : loading_.clouds()) {
-            AttributeNeeds needs = cloud.ready() ? needsOf(style_, *cloud.opened.metadata) : AttributeNeeds{};
+            AttributeNeeds needs;
+            if (cloud.ready())
+                needs = limits_.skips.unused ? needsOf(style_, *cloud.opened.metadata)
+                                             : needsOfAll(style_, *cloud.opened.metadata);
             if (needs == cloud.needs)
                 continue;
             cloud.needs = std::move(needs);
@@ -338,7 +342,7 @@ class Session final : public ViewSession {
                 exact_.contains({selected.cloud, selected.node}) && cached->hasBlock(cloud.needs.exactBlock);
             if (painter_.paint(cloud, selected.node, exact, *cached))
                 loading_.cache().recount(key);
-            if (cached->paint && cached->paint->hidden == cached->node->pointCount) {
+            if (limits_.skips.hidden && cached->paint && cached->paint->hidden == cached->node->pointCount) {
                 ++next.counters.nodesHidden;
                 --next.counters.nodesDrawn;
                 next.counters.pointsDrawn -= selected.drawPoints;

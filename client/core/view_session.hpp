@@ -10,6 +10,7 @@
 #include "client/core/node_decoder.hpp"
 #include "client/core/point_record.hpp"
 #include "client/core/priority_weights.hpp"
+#include "client/core/skips.hpp"
 #include "client/core/style.hpp"
 #include "shared/io/byte_source.hpp"
 
@@ -32,6 +33,7 @@ struct SessionLimits {
     std::uint64_t bytesInFlight = 8ull << 20;
     std::uint64_t mergeGapBytes = 4096;            // ranges this near travel as one request
     std::uint64_t mergedRequestBytes = 1ull << 20; // a merged request's largest size
+    Skips skips;
 };
 
 inline constexpr std::size_t maxRecentErrors = 32;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <set>
 
 using namespace stipple;
@@ -25,6 +26,24 @@ TEST_CASE("the table of modes can be read; names are unique and say something") 
     CHECK(builtInModes().front().style == Style{});
 }
 
+TEST_CASE("modes are compared with modes that are there, and every skip has one without it") {
+    Skips all, without;
+    for (const Mode& mode : builtInModes()) {
+        INFO(mode.name);
+        auto named = [&](const Mode& other) { return other.name == mode.against; };
+        CHECK((mode.against.empty() || std::any_of(builtInModes().begin(), builtInModes().end(), named)));
+        CHECK((mode.against.empty() || !mode.group.empty()));
+        const Skips& skips = mode.limits.skips;
+        CHECK((skips == all || mode.group == "skips"));
+        without.unseen &= skips.unseen;
+        without.clipped &= skips.clipped;
+        without.hidden &= skips.hidden;
+        without.tooFine &= skips.tooFine;
+        without.unused &= skips.unused;
+    }
+    CHECK(without == Skips{false, false, false, false, false});
+}
+
 TEST_CASE("modes survive JSON, and wrong ones are refused by name") {
     json list = json::array();
     for (const Mode& mode : builtInModes())
@@ -38,9 +57,11 @@ TEST_CASE("modes survive JSON, and wrong ones are refused by name") {
     for (std::size_t i = 0; i < back->size(); ++i)
         CHECK(toJson((*back)[i]) == list[i]);
 
-    for (const char* text : {"{}", R"([{"about": "nameless"}])", R"([{"name": "a", "style": {"size": 3}}])",
-                             R"([{"name": "a", "backend": "vulkan"}])", R"([{"name": "a", "swept": true}])",
-                             R"([{"name": "a", "limits": {"minNodePixels": -1}}])", R"([5])"}) {
+    for (const char* text :
+         {"{}", R"([{"about": "nameless"}])", R"([{"name": "a", "style": {"size": 3}}])",
+          R"([{"name": "a", "backend": "vulkan"}])", R"([{"name": "a", "swept": true}])",
+          R"([{"name": "a", "limits": {"minNodePixels": -1}}])", R"([5])",
+          R"([{"name": "a", "without": ["frustum"]}])", R"([{"name": "a", "without": "unseen"}])"}) {
         INFO(text);
         auto read = modesFromJson(json::parse(text));
         REQUIRE_FALSE(read.ok());

@@ -54,6 +54,32 @@ TEST_CASE("summaries take the frames of all paths together") {
     CHECK(summaries[1].frames == 1);
 }
 
+TEST_CASE("a mode is compared with the one that it names, at the same budget") {
+    BenchResult result = someResult();
+    Mode lighter = builtInModes()[0];
+    lighter.name = "lighter";
+    lighter.group = "skips";
+    lighter.against = "default";
+    result.modes.push_back(lighter);
+    result.runs.push_back({"town", "orbit", "lighter", 1000, "software", {frame(0.005, 8)}});
+    result.runs.push_back(
+        {"town", "orbit", "lighter", 5000, "software", {frame(0.005, 8)}}); // the other was not run
+    auto comparisons = compare(summarise(result.runs), result.modes);
+    REQUIRE(comparisons.size() == 1);
+    CHECK(comparisons[0].mode == "lighter");
+    CHECK(comparisons[0].drawSeconds == Approx(0.25));
+    CHECK(comparisons[0].pointsDrawn == 1);
+    CHECK(comparisons[0].meanError == Approx(8 - (5.1 + 10.2 + 2.55) / 3));
+    nlohmann::json json = toJson(result);
+    CHECK(json["comparisons"].size() == 1);
+    CHECK(json["comparisons"][0]["bytesFetched"].is_null()); // neither has any
+    auto html = htmlOf(result);
+    REQUIRE(html.ok());
+    CHECK(html->find("Time against mean error: skips") != std::string::npos);
+    CHECK(html->find("<td>lighter</td><td class=\"text\">default</td><td>0.001 M</td><td>0.250</td>") !=
+          std::string::npos);
+}
+
 TEST_CASE("the JSON holds every frame") {
     nlohmann::json json = toJson(someResult());
     CHECK(json["runs"].size() == 3);

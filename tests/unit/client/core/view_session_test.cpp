@@ -457,6 +457,75 @@ TEST_CASE("nodes that are clipped away are neither fetched nor drawn") {
     CHECK(fixture.session->style().clipBoxes[0].halfSize.x < 1e100);
 }
 
+TEST_CASE("without a skip more is fetched and drawn, and what shows stays") {
+    const SmallCloud& cloud = smallCloud();
+    Fixture fixture(everything());
+    auto script = fixture.open(cloud.file);
+    BoxD bounds = cloud.metadata.worldBounds();
+    Camera camera; // inside, looking along x: some of the cloud lies behind
+    camera.position = (bounds.min + bounds.max) * 0.5;
+    camera.target = camera.position + Vec3d{1, 0, 0};
+    fixture.session->setCamera(camera);
+    auto look = [&](const Style& style, const Skips& skips) {
+        SessionLimits limits = everything();
+        limits.skips = skips;
+        fixture.session->setLimits(limits);
+        fixture.session->setStyle(style);
+        fixture.session->update();
+        REQUIRE(fixture.settle());
+        return fixture.session->plan().counters;
+    };
+    // The shown points of both pictures; the keys of their nodes are in the order of the selection.
+    auto shown = [&] {
+        std::uint64_t points = 0;
+        for (const DrawNode& node : fixture.session->plan().nodes)
+            for (std::uint32_t i = 0; i < node.pointCount; ++i)
+                points += node.shows(i);
+        return points;
+    };
+
+    FrameCounters seen = look({}, {}), all = look({}, {.unseen = false});
+    CHECK(seen.nodesOutsideFrustum > 0);
+    CHECK(all.nodesOutsideFrustum == 0);
+    CHECK(all.nodesDrawn == cloud.nodes.size());
+    CHECK(seen.nodesDrawn < all.nodesDrawn);
+
+    Style clipped;
+    clipped.clipBoxes = {{bounds.min, (bounds.max - bounds.min) * 0.3}};
+    Skips skips{.unseen = false};
+    FrameCounters cut = look(clipped, skips);
+    std::uint64_t left = shown();
+    skips.clipped = skips.hidden = false;
+    all = look(clipped, skips);
+    CHECK(cut.nodesClipped > 0);
+    CHECK(all.nodesClipped == 0);
+    CHECK(all.nodesDrawn == cloud.nodes.size());
+    CHECK(shown() == left);
+
+    Style filtered;
+    filtered.filters = {{"Point Source ID", 70000, 80000}}; // beyond all values, as statistics say
+    CHECK(look(filtered, {}).nodesDrawn == 0);
+    all = look(filtered, {.hidden = false});
+    CHECK(all.nodesDrawn == seen.nodesDrawn);
+    CHECK(all.pointsHidden == all.pointsDrawn);
+
+    Style continuous;
+    continuous.detail.mode = DetailMode::continuous;
+    continuous.detail.spacingPixels = 1; // some two of the units that points of the root are apart
+    fixture.look(cloud);
+    FrameCounters prefixes = look(continuous, {});
+    all = look(continuous, {.tooFine = false});
+    CHECK(prefixes.pointsTooFine > 0);
+    CHECK(all.nodesDrawn == prefixes.nodesDrawn);
+    for (const DrawNode& node : fixture.session->plan().nodes)
+        CHECK(node.pointCount == node.node->totalPoints);
+
+    std::uint64_t before = fixture.session->counters().attributeBytesFetched;
+    look({}, {.unused = false});
+    CHECK(fixture.session->counters().attributeBytesFetched > before);
+    CHECK(script->reads.size() > 1);
+}
+
 TEST_CASE("the level of a leaf's point follows its density, as the choice of points does") {
     SmallCloud cloud = makeSmallCloud({.levels = 2}); // a root and its four leaves, 400 points each
     Fixture fixture(everything());
