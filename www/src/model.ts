@@ -2,6 +2,7 @@ import { Clipping } from './clipping/clipping.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { messageOf } from './messages.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
+import { Profile } from './profile/profile.ts';
 import { mostSceneBytes, readScene } from './scene/read_scene.ts';
 import { differences, type Scene, type SceneCloud, sceneMeasurement, sceneVersion } from './scene/scene.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
@@ -51,6 +52,7 @@ export class Model extends EventTarget {
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
     readonly clipping = new Clipping(this);
+    readonly profile = new Profile(this);
     /** What was measured, and the tool in hand. */
     readonly measuring = new Measuring(this);
 

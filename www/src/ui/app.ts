@@ -6,6 +6,7 @@ import './look_panel.ts';
 import './measure_overlay.ts';
 import './measure_panel.ts';
 import './point_panel.ts';
+import './profile_panel.ts';
 import './scene_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
@@ -35,7 +36,7 @@ export class App extends ModelElement {
                 pointer-events: none;
                 display: grid;
                 grid-template-columns: auto 1fr auto;
-                grid-template-rows: 1fr auto;
+                grid-template-rows: 1fr auto auto;
                 padding: 12px;
                 gap: 12px;
             }
@@ -54,7 +55,7 @@ export class App extends ModelElement {
                 scrollbar-width: thin;
             }
             .controls {
-                grid-row: 1 / 3;
+                grid-row: 1 / 4;
                 width: 296px;
             }
             .controls.closed {
@@ -96,9 +97,15 @@ export class App extends ModelElement {
                 align-self: end;
                 width: 270px;
             }
-            .status {
+            .profile {
                 grid-column: 2 / 4;
                 grid-row: 2;
+                align-self: end;
+                min-width: 0;
+            }
+            .status {
+                grid-column: 2 / 4;
+                grid-row: 3;
                 justify-self: end;
                 display: flex;
                 align-items: center;
@@ -198,6 +205,10 @@ export class App extends ModelElement {
                     justify-self: start;
                     max-height: 40vh;
                 }
+                .profile {
+                    grid-column: 1;
+                    grid-row: 1;
+                }
                 .status {
                     grid-column: 1;
                     grid-row: 2;
@@ -210,6 +221,17 @@ export class App extends ModelElement {
             }
         `,
     ];
+
+    private readonly follow = (): void => this.requestUpdate();
+
+    override connectedCallback(): void {
+        super.connectedCallback();
+        this.model.profile.addEventListener('change', this.follow);
+    }
+    override disconnectedCallback(): void {
+        this.model.profile.removeEventListener('change', this.follow);
+        super.disconnectedCallback();
+    }
 
     constructor() {
         super();
@@ -230,6 +252,11 @@ export class App extends ModelElement {
             ${this.model.picked
                 ? html`<aside class="panel point" aria-label="Point" aria-live="polite">
                       <stipple-point .model=${this.model}></stipple-point>
+                  </aside>`
+                : ''}
+            ${this.model.profile.isOpen
+                ? html`<aside class="panel profile" aria-label="Profile">
+                      <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
             ${this.renderStatus()}

@@ -89,6 +89,11 @@ export class MeasurePanel extends ModelElement {
             dd small {
                 color: var(--muted);
             }
+            .section {
+                min-height: 1.6rem;
+                font-size: 0.82rem;
+                margin-top: 0.2rem;
+            }
             .error {
                 margin: 0.3rem 0 0;
                 font-size: 0.82rem;
@@ -198,6 +203,11 @@ export class MeasurePanel extends ModelElement {
                     ✕
                 </button>
             </div>
+            ${item.kind === 'distance' && item.answer
+                ? html`<button class="section" @click=${() => this.model.profile.open(item.points.map(({ position }) => position))}>
+                      Profile
+                  </button>`
+                : ''}
             ${item.error ? html`<p class="error" role="alert">${item.error}</p>` : ''}
             <dl>
                 ${lines.map(

@@ -1,0 +1,139 @@
+// Profiles: cut along a line that was measured, complete, equal to the whole cloud's points tested one by one; its own picking,
+// measuring and files.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, describe, test } from 'node:test';
+
+import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
+import { makeTown, scratchFolder, serve } from './support/program.mjs';
+
+let browser, folder, server, page, complaints, line;
+
+before(async () => {
+    folder = await scratchFolder();
+    server = await serve(await makeTown(folder.path));
+    browser = await launch();
+    ({ page, complaints } = await openPage(browser, { width: 1100, height: 720 }));
+    await page.goto(server.address);
+    await settleWithPoints(page);
+    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
+    await settle(page);
+    await page.getByRole('button', { name: 'Distance' }).click();
+    for (const [i, place] of [{ x: 430, y: 300 }, { x: 620, y: 310 }, { x: 700, y: 400 }].entries()) {
+        await page.locator('canvas').first().click({ position: place });
+        await page.waitForFunction((n) => window.stipple.measurements().at(-1)?.points.length === n, i + 1);
+    }
+    await page.keyboard.press('Enter');
+    line = (await page.evaluate(() => window.stipple.measurements()))[0].points.map(({ position }) => position);
+});
+
+after(async () => {
+    await browser?.close();
+    await server?.stop();
+    await folder?.cleanUp();
+});
+
+const panel = () => page.getByRole('complementary', { name: 'Profile' });
+const shownPoints = async () => Number(await panel().getByRole('status').getAttribute('data-points'));
+const complete = () => panel().getByRole('status').filter({ hasText: 'complete' }).waitFor();
+
+async function rowsOf(address) {
+    const [head, ...rows] = (await (await fetch(address)).text()).trim().split(/\r?\n/);
+    const names = head.split(',');
+    return rows.map((row) => Object.fromEntries(row.split(',').map((field, at) => [names[at], Number(field)])));
+}
+
+/** Within half the width of the first or the second segment, give or take `slack`; without the mitre between them. */
+function within(p, width, slack) {
+    return [0, 1].some((i) => {
+        const [a, b] = [line[i], line[i + 1]];
+        const dx = b[0] - a[0], dy = b[1] - a[1], length = Math.hypot(dx, dy);
+        const station = ((p.X - a[0]) * dx + (p.Y - a[1]) * dy) / length;
+        const offset = Math.abs((p.X - a[0]) * dy - (p.Y - a[1]) * dx) / length;
+        return station >= -slack && station <= length + slack && offset <= width / 2 + slack;
+    });
+}
+
+describe('profiles', () => {
+    test('a profile fills in until it has all points of its corridor', async () => {
+        await page.getByRole('button', { name: 'Profile' }).click();
+        await complete();
+        const width = Number(await page.getByLabel('Width of the profile').inputValue());
+        const address = await panel().getByRole('link', { name: 'CSV' }).getAttribute('href');
+        const rows = await rowsOf(address);
+        assert.equal(await shownPoints(), rows.length);
+        const all = await rowsOf(`${address.split('/profile?')[0]}/points?format=csv&attributes=none`);
+        const inside = all.filter((p) => within(p, width, -1e-6));
+        const text = (p) => `${p.X} ${p.Y} ${p.Z}`;
+        const found = new Set(rows.map(text)), missing = inside.filter((p) => !found.has(text(p)));
+        const corner = rows.filter((p) => !within(p, width, 1e-6));
+        console.log(`  ${rows.length} points, of them ${corner.length} in the corner's mitre`);
+        assert.equal(missing.length, 0);
+        const turn = line[1];
+        for (const p of corner) assert.ok(Math.hypot(p.X - turn[0], p.Y - turn[1]) <= 2 * width, JSON.stringify(p));
+        assert.ok(rows.length > 100);
+        await keepScreenshot(page, 'profile');
+    });
+
+    test('points are picked and measured in it; dragging, the wheel and the exaggeration move the view', async () => {
+        const view = await panel().locator('.view').boundingBox();
+        const told = panel().locator('p.told').last();
+        const find = async (from, pattern) => {
+            for (let x = from; x < view.width - 20; x += 6)
+                for (let y = 20; y < view.height - 40; y += 12) {
+                    await page.mouse.move(view.x + x, view.y + y);
+                    await page.evaluate(() => new Promise(requestAnimationFrame)); // it is told
+                    if (pattern.test(await told.textContent())) return { x: view.x + x, y: view.y + y };
+                }
+            throw new Error('no point was found');
+        };
+        const first = await find(view.width / 4, /Station/);
+        await page.mouse.down();
+        await page.mouse.up();
+        const marked = await told.textContent();
+        await find(view.width / 2, /From the marked point/);
+        const text = await told.textContent();
+        const numbers = (t) => t.match(/-?\d+\.\d+/g).map(Number);
+        const [s1, h1] = numbers(marked), [s2, h2, , , , along, up, apart] = numbers(text);
+        assert.ok(Math.abs(along - (s2 - s1)) < 0.0011 && Math.abs(up - (h2 - h1)) < 0.0011);
+        assert.ok(Math.abs(apart - Math.hypot(along, up)) < 0.0011);
+
+        const axes = () => panel().locator('svg').innerHTML();
+        const before = await axes();
+        await page.mouse.move(first.x, first.y);
+        await page.mouse.wheel(0, -300);
+        await page.waitForTimeout(200);
+        const zoomed = await axes();
+        assert.notEqual(zoomed, before);
+        await page.mouse.down();
+        await page.mouse.move(first.x + 80, first.y + 10, { steps: 4 });
+        await page.mouse.up();
+        await page.waitForTimeout(200);
+        assert.notEqual(await axes(), zoomed);
+        await page.getByLabel('Exaggeration of heights').fill('3');
+        await page.getByLabel('Exaggeration of heights').press('Tab');
+        await page.waitForTimeout(200);
+        assert.notEqual(await axes(), before);
+    });
+
+    test('its width is changed, it is saved as a picture with axes, and closed while it loads', async () => {
+        const before = await shownPoints();
+        await page.getByLabel('Width of the profile').fill('12');
+        await page.getByLabel('Width of the profile').press('Tab');
+        await complete();
+        assert.ok((await shownPoints()) > 1.5 * before);
+        const [download] = await Promise.all([
+            page.waitForEvent('download'),
+            panel().getByRole('link', { name: 'SVG' }).click(),
+        ]);
+        const picture = await readFile(await download.path(), 'utf8');
+        assert.match(picture, /<image href="data:image\/png;base64,/);
+        assert.ok((picture.match(/<text/g) ?? []).length > 4);
+        await page.getByLabel('Width of the profile').fill('40');
+        await page.getByLabel('Width of the profile').press('Tab');
+        await page.getByRole('button', { name: 'Close the profile' }).click();
+        await page.waitForTimeout(500);
+        assert.equal(await panel().count(), 0);
+        assert.deepEqual(complaints, []);
+    });
+});

@@ -1,0 +1,124 @@
+import { messageOf } from '../messages.ts';
+import type { Model } from '../model.ts';
+import type { Vector } from '../wasm/values.ts';
+import { ProfilePoints, readProfile } from './profile_points.ts';
+
+/** Points a metre of the line, roughly, at the first look; each further look has four times as many, the last has all. */
+const firstLook = 300;
+const looks = 3;
+/** The last look is not taken by itself if it promises more. */
+const mostPoints = 3_000_000;
+
+/** Vertical sections along a line that was drawn: the points of the server's clouds within half the width of it. */
+export class Profile extends EventTarget {
+    line: Vector[] = [];
+    width = 1;
+    points = new ProfilePoints();
+    /** Of the line, in plan. */
+    length = 0;
+    isLoading = false;
+    isComplete = false;
+    error = '';
+    private abort: AbortController | undefined;
+
+    constructor(private readonly model: Model) {
+        super();
+    }
+
+    get isOpen(): boolean {
+        return this.line.length > 1;
+    }
+
+    open(line: Vector[]): void {
+        this.line = line;
+        this.length = line
+            .slice(1)
+            .reduce((sum, [x, y], i) => sum + Math.hypot(x - line[i]![0], y - line[i]![1]), 0);
+        this.width = Number((this.length / 50).toPrecision(1)) || 1;
+        void this.load();
+    }
+    close(): void {
+        this.abort?.abort();
+        this.line = [];
+        this.points = new ProfilePoints();
+        this.changed();
+    }
+    setWidth(width: number): void {
+        if (!(width > 0) || !Number.isFinite(width)) return;
+        this.width = width;
+        void this.load();
+    }
+
+    /** Of each cloud that this page's server has: the profile's address. */
+    addresses(format: string, extra: Record<string, string> = {}): { name: string; href: string }[] {
+        const query = new URLSearchParams({
+            line: this.line.map(([x, y]) => `${x},${y}`).join(';'),
+            width: String(this.width),
+            format,
+            ...extra,
+        });
+        return this.model.clipping.apisOfClouds().map(({ name, api }) => ({ name, href: `${api}/profile?${query}` }));
+    }
+
+    /** Coarse points first, then finer ones in their place. What was under way is given up at once. */
+    private async load(): Promise<void> {
+        this.abort?.abort();
+        const abort = (this.abort = new AbortController());
+        this.points = new ProfilePoints();
+        this.error = '';
+        this.isComplete = false;
+        this.isLoading = true;
+        this.changed();
+        try {
+            if (this.addresses('csv').length === 0)
+                throw new Error("Profiles are cut by the page's server, and none of the open clouds is one of it.");
+            for (let look = 0, goesOn = true; look <= looks && goesOn; look++) {
+                const isLast = look === looks;
+                const spacing = this.length / firstLook / 2 ** look;
+                goesOn = await this.look(isLast ? undefined : spacing, abort.signal);
+                if (abort.signal.aborted) return;
+                this.isComplete = isLast && goesOn;
+                this.changed();
+            }
+        } catch (error) {
+            if (abort.signal.aborted) return;
+            this.error = messageOf(error);
+        }
+        this.isLoading = false;
+        this.changed();
+    }
+
+    /** One look at all clouds; false if a further one would be too much. */
+    private async look(spacing: number | undefined, signal: AbortSignal): Promise<boolean> {
+        const points = new ProfilePoints();
+        for (const { name, href } of this.addresses('csv', spacing === undefined ? {} : { spacing: String(spacing) })) {
+            const wanted = this.attributesOf(name);
+            const response = await fetch(`${href}&attributes=${encodeURIComponent(wanted)}`, { signal });
+            if (!response.ok) throw new Error(await sentenceOf(response));
+            await readProfile(response.body!, points);
+        }
+        if (signal.aborted) return false;
+        this.points = points;
+        return 4 * points.count <= mostPoints || spacing === undefined;
+    }
+
+    private attributesOf(name: string): string {
+        const has = this.model.clouds.find((cloud) => cloud.name === name)?.attributes ?? [];
+        const wanted = ['Red', 'Green', 'Blue', 'Classification'].filter((attribute) => has.includes(attribute));
+        return wanted.length > 0 ? wanted.join(',') : 'none';
+    }
+
+    private changed(): void {
+        this.dispatchEvent(new Event('change'));
+    }
+}
+
+/** What a problem document (RFC 9457) says. */
+async function sentenceOf(response: Response): Promise<string> {
+    try {
+        const problem = (await response.json()) as { detail?: string; title?: string };
+        return `The server has no profile: ${problem.detail ?? problem.title}`;
+    } catch {
+        return `The server has no profile: status ${response.status}.`;
+    }
+}

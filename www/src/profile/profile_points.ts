@@ -1,0 +1,93 @@
+/** Points of a profile, column by column; `colour`: 0xAABBGGRR, as a canvas has it. */
+export class ProfilePoints {
+    count = 0;
+    station = new Float64Array(1024);
+    height = new Float64Array(1024);
+    offset = new Float64Array(1024);
+    x = new Float64Array(1024);
+    y = new Float64Array(1024);
+    colour = new Uint32Array(1024);
+    classification = new Uint8Array(1024);
+
+    add(row: { station: number; offset: number; x: number; y: number; z: number; colour: number; class: number }): void {
+        if (this.count === this.station.length) this.grow();
+        const at = this.count++;
+        this.station[at] = row.station;
+        this.offset[at] = row.offset;
+        this.height[at] = row.z;
+        this.x[at] = row.x;
+        this.y[at] = row.y;
+        this.colour[at] = row.colour;
+        this.classification[at] = row.class;
+    }
+
+    /** Of the heights; [0, 1] without points. */
+    heights(): [number, number] {
+        let low = Infinity, high = -Infinity;
+        for (let i = 0; i < this.count; i++) {
+            low = Math.min(low, this.height[i]!);
+            high = Math.max(high, this.height[i]!);
+        }
+        return this.count > 0 ? [low, high] : [0, 1];
+    }
+
+    private grow(): void {
+        const size = 2 * this.station.length;
+        const wider = (old: Float64Array<ArrayBuffer>): Float64Array<ArrayBuffer> => {
+            const array = new Float64Array(size);
+            array.set(old);
+            return array;
+        };
+        this.station = wider(this.station);
+        this.height = wider(this.height);
+        this.offset = wider(this.offset);
+        this.x = wider(this.x);
+        this.y = wider(this.y);
+        const colour = new Uint32Array(size), classification = new Uint8Array(size);
+        colour.set(this.colour);
+        classification.set(this.classification);
+        this.colour = colour;
+        this.classification = classification;
+    }
+}
+
+const plainColour = 0xffc8c8c8;
+
+/** Reads the CSV of /profile (docs/API.md) as it arrives. */
+export async function readProfile(body: ReadableStream<Uint8Array>, into: ProfilePoints): Promise<void> {
+    let rest = '', columns: Record<string, number> | undefined;
+    const take = (line: string): void => {
+        if (line === '') return;
+        const fields = line.split(',');
+        if (!columns) {
+            columns = Object.fromEntries(fields.map((name, at) => [name.trim(), at]));
+            for (const name of ['X', 'Y', 'Z', 'Station', 'Offset'])
+                if (columns[name] === undefined) throw new Error(`The server's profile has no column ${name}.`);
+            return;
+        }
+        const number = (name: string): number => Number(fields[columns![name]!]);
+        into.add({
+            station: number('Station'),
+            offset: number('Offset'),
+            x: number('X'),
+            y: number('Y'),
+            z: number('Z'),
+            colour: columns['Red'] === undefined ? plainColour : colourOf(number('Red'), number('Green'), number('Blue')),
+            class: columns['Classification'] === undefined ? 0 : number('Classification'),
+        });
+    };
+    const reader = body.pipeThrough(new TextDecoderStream() as unknown as ReadableWritablePair<string, Uint8Array>).getReader();
+    for (;;) {
+        const { done, value } = await reader.read();
+        const lines = (rest + (value ?? '')).split('\n');
+        rest = done ? '' : lines.pop()!;
+        for (const line of lines) take(line.trimEnd());
+        if (done) return;
+    }
+}
+
+/** 16-bit channels, as LAS has them; files with 8-bit values in them show them as they are. */
+function colourOf(red: number, green: number, blue: number): number {
+    const shift = Math.max(red, green, blue) > 255 ? 8 : 0;
+    return (0xff000000 | ((blue >> shift) << 16) | ((green >> shift) << 8) | (red >> shift)) >>> 0;
+}
