@@ -13,7 +13,11 @@ const clickSlop = 3;
  * With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
-    const { measuring, navigator } = model;
+    const { annotations, measuring, navigator } = model;
+    const putAnnotation = async (x: number, y: number): Promise<void> => {
+        const place = await model.place(x, y);
+        if (place) annotations.add(place);
+    };
     const fingers = new Map<number, { x: number; y: number }>();
     /** Where the one pointer went down; none once it has moved, or another came. */
     let pressed: { x: number; y: number } | undefined;
@@ -60,6 +64,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     canvas.addEventListener('pointerup', (event) => {
         lift(event);
         if (pressed && measuring.isDrawing) void measuring.click(pressed.x, pressed.y);
+        else if (pressed && annotations.isPlacing) void putAnnotation(pressed.x, pressed.y);
         else if (pressed) void model.showPoint(pressed.x, pressed.y);
         pressed = undefined;
     });
@@ -105,7 +110,11 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             f: () => void model.flyToCloud(),
             u: () => navigator.back(),
             U: () => navigator.forward(),
-            Escape: () => (measuring.isDrawing ? measuring.stop() : model.forgetPoint()),
+            Escape: () => {
+                if (measuring.isDrawing) measuring.stop();
+                else if (annotations.isPlacing) annotations.place();
+                else model.forgetPoint();
+            },
             ...(measuring.isDrawing && {
                 Enter: () => measuring.finish(),
                 Backspace: () => measuring.takeBack(),

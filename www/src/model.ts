@@ -1,8 +1,10 @@
+import { Annotations } from './annotations/annotations.ts';
 import { Clipping } from './clipping/clipping.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { messageOf } from './messages.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
+import { Questions, type Reply } from './questions.ts';
 import { mostSceneBytes, readScene } from './scene/read_scene.ts';
 import { differences, type Scene, type SceneCloud, sceneMeasurement, sceneVersion } from './scene/scene.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
@@ -51,6 +53,7 @@ export class Model extends EventTarget {
 
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
+    readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);
     readonly profile = new Profile(this);
     /** What was measured, and the tool in hand. */
@@ -59,7 +62,7 @@ export class Model extends EventTarget {
     /** As the program has them at first. */
     private defaults!: { style: Style; limits: Limits };
     private viewer!: Viewer;
-    private lastQuestion = 0;
+    private readonly questions = new Questions();
     private frameIsDue = false;
     private reportIsDue = false;
     /** The camera has not moved for a while. */
@@ -237,6 +240,7 @@ export class Model extends EventTarget {
             navigation: this.navigator.mode,
             unit: this.measuring.unit,
             measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
+            annotations: this.annotations.items,
         };
     }
 
@@ -280,6 +284,7 @@ export class Model extends EventTarget {
                 })),
             })),
         );
+        this.annotations.replace(scene.annotations);
         this.rememberSoon();
     }
 
@@ -312,32 +317,32 @@ export class Model extends EventTarget {
     // What is under the pointer
 
     /** The place shown there, in world coordinates, without anything being read; null if there is none. */
-    async place(x: number, y: number, radius = 8): Promise<Vector | null> {
-        const ratio = this.pixelRatio;
-        const question = ++this.lastQuestion;
-        this.viewer.pick(x * ratio, y * ratio, Math.round(radius * ratio));
-        for (;;) {
-            await new Promise((resolve) => requestAnimationFrame(resolve));
-            if (question !== this.lastQuestion) return null;
-            const answer = this.viewer.takePlace();
-            if (answer.error !== undefined) throw new Error(answer.error);
-            if (!answer.pending) return answer.place ?? null;
-        }
+    place(x: number, y: number, radius = 8): Promise<Vector | null> {
+        return this.questions.ask(() => this.beginPick(x, y, radius), () => this.placeReply());
+    }
+    /** The same for what the page asks by itself; undefined if a person asked something else meanwhile. */
+    placeAside(x: number, y: number, radius = 2): Promise<Vector | null | undefined> {
+        return this.questions.askAside(() => this.beginPick(x, y, radius), () => this.placeReply());
+    }
+    /** The point shown at a place of the canvas (CSS pixels), with all its attributes; null if there is none. */
+    pick(x: number, y: number, radius = 8): Promise<PickedPoint | null> {
+        return this.questions.ask(
+            () => this.beginPick(x, y, radius),
+            () => {
+                const { pending, point, error } = this.viewer.takePick();
+                if (pending) this.wake(); // what has to be read is asked for between frames
+                return { pending, ...(point && { value: point }), ...(error !== undefined && { error }) };
+            },
+        );
     }
 
-    /** The point shown at a place of the canvas (CSS pixels), with all its attributes; null if there is none. */
-    async pick(x: number, y: number, radius = 8): Promise<PickedPoint | null> {
+    private beginPick(x: number, y: number, radius: number): void {
         const ratio = this.pixelRatio;
-        const question = ++this.lastQuestion;
         this.viewer.pick(x * ratio, y * ratio, Math.round(radius * ratio));
-        for (;;) {
-            await new Promise((resolve) => requestAnimationFrame(resolve));
-            if (question !== this.lastQuestion) return null; // another took its place
-            const answer = this.viewer.takePick();
-            if (answer.error !== undefined) throw new Error(answer.error);
-            if (!answer.pending) return answer.point ?? null;
-            this.wake(); // what has to be read is asked for between frames
-        }
+    }
+    private placeReply(): Reply<Vector> {
+        const { pending, place, error } = this.viewer.takePlace();
+        return { pending, ...(place && { value: place }), ...(error !== undefined && { error }) };
     }
 
     /** Shows what is known of the point there, or that there is none. */
@@ -486,6 +491,7 @@ export class Model extends EventTarget {
         clearTimeout(this.rememberTimer);
         this.rememberTimer = setTimeout(() => {
             this.navigator.history.rest(this.viewer.camera());
+            this.dispatchEvent(new Event('rest'));
             this.changed();
         }, rememberPauseMs);
     }

@@ -1,3 +1,4 @@
+import type { Annotation } from './annotations/annotation.ts';
 import type { Measurement } from './measuring/measurement.ts';
 import type { Model } from './model.ts';
 import type { Counters, PickedPoint } from './wasm/values.ts';
@@ -18,6 +19,7 @@ export interface TestHook {
     setLimits(limits: object): void;
     /** The point shown at a place of the canvas, in CSS pixels; null if there is none. */
     pick(x: number, y: number, radius?: number): Promise<PickedPoint | null>;
+    annotations(): Annotation[];
     /** What was measured, oldest first. */
     measurements(): Measurement[];
     /** Draws once more and reads the canvas back: rows from the top, four bytes a pixel, as base64. */
@@ -40,6 +42,7 @@ export function installTestHook(model: Model): void {
         style: () => model.style,
         setLimits: (limits) => model.changeLimits(limits),
         pick: (x, y, radius) => model.pick(x, y, radius),
+        annotations: () => model.annotations.items,
         measurements: () => model.measuring.items,
         readPixels: () => {
             const { width, height, rgba } = model.readPixels();

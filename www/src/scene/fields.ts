@@ -51,6 +51,9 @@ export class FieldReader {
         if (typeof value !== 'object' || value === null || Array.isArray(value)) this.fail(name, 'an object {…}');
         return value as Record<string, unknown>;
     }
+    optionalObject(name: string): Record<string, unknown> | undefined {
+        return Object.hasOwn(this.source, name) ? this.object(name) : undefined;
+    }
     list<T>(name: string, most: number, read: (item: unknown, path: string) => T): T[] {
         const value = this.take(name);
         if (value === undefined) return [];

@@ -1,3 +1,4 @@
+import type { Annotation } from '../annotations/annotation.ts';
 import { kindsOfMeasurement, kindOf } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
 import type { Camera, Limits, PlacedPoint, Style } from '../wasm/values.ts';
@@ -35,8 +36,10 @@ export function readScene(text: string): Scene {
         navigation: fields.oneOf('navigation', ['orbit', 'earth', 'fly'], 'orbit'),
         unit: fields.oneOf('unit', displayUnits.map(([unit]) => unit), 'stored'),
         measurements: fields.list('measurements', 10_000, readMeasurement),
+        annotations: fields.list('annotations', 10_000, readAnnotation),
     };
     fields.finish();
+    checkTree(scene.annotations);
     return scene;
 }
 
@@ -81,6 +84,39 @@ function readMeasurement(value: unknown, path: string): SceneMeasurement {
     if (count < least || (points !== undefined && count > points))
         throw new Error(`${path} has ${count} points, which are too ${count < least ? 'few' : 'many'} for its kind, ${kind}.`);
     return measurement;
+}
+
+function readAnnotation(value: unknown, path: string): Annotation {
+    const fields = FieldReader.of(value, path);
+    const camera = fields.optionalObject('camera');
+    const annotation: Annotation = {
+        id: fields.number('id', 0, (id) => isWhole(id) && id > 0),
+        parent: fields.number('parent', 0, isWhole),
+        title: fields.text('title', 'Annotation'),
+        text: fields.text('text', '', 100_000),
+        position: fields.vector('position'),
+        ...(camera && { camera: camera as unknown as Camera }),
+        hidden: fields.flag('hidden', false),
+        maxDistance: fields.number('maxDistance', 0, (distance) => distance >= 0),
+    };
+    fields.finish();
+    return annotation;
+}
+
+const deepestTree = 32;
+
+/** Ids are different, parents are there, none belongs to itself, and none too deep in others. */
+function checkTree(annotations: Annotation[]): void {
+    const parents = new Map(annotations.map(({ id, parent }) => [id, parent]));
+    if (parents.size !== annotations.length) throw new Error('annotations: two have the same id.');
+    for (const { id } of annotations) {
+        let at: number | undefined = id;
+        for (let depth = 0; at !== 0 && at !== undefined && depth <= deepestTree; depth++) at = parents.get(at);
+        if (at !== 0)
+            throw new Error(
+                `annotations: the one with id ${id} belongs to none that is there, to itself, or is deeper than ${deepestTree}.`,
+            );
+    }
 }
 
 function readPoint(value: unknown, path: string): PlacedPoint {

@@ -1,3 +1,4 @@
+import type { Annotation } from '../annotations/annotation.ts';
 import type { Measurement } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
@@ -36,6 +37,7 @@ export interface Scene {
     navigation: NavigationMode;
     unit: DisplayUnit;
     measurements: SceneMeasurement[];
+    annotations: Annotation[];
 }
 
 /** The fields of `value` that are not as in `defaults`. */

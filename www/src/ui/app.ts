@@ -1,3 +1,5 @@
+import './annotation_overlay.ts';
+import './annotation_panel.ts';
 import './clip_overlay.ts';
 import './clip_panel.ts';
 import './cloud_list.ts';
@@ -40,7 +42,7 @@ export class App extends ModelElement {
                 padding: 12px;
                 gap: 12px;
             }
-            :host > :not(stipple-measure-overlay, stipple-clip-overlay) {
+            :host > :not(stipple-measure-overlay, stipple-clip-overlay, stipple-annotation-overlay) {
                 pointer-events: auto;
             }
             .panel {
@@ -241,7 +243,8 @@ export class App extends ModelElement {
     }
 
     override render(): TemplateResult {
-        return html`<stipple-clip-overlay .model=${this.model}></stipple-clip-overlay>
+        return html`<stipple-annotation-overlay .model=${this.model}></stipple-annotation-overlay>
+            <stipple-clip-overlay .model=${this.model}></stipple-clip-overlay>
             <stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
             ${this.renderProgress()} ${this.renderControls()}
             ${this.countersAreOpen
@@ -295,6 +298,7 @@ export class App extends ModelElement {
                 <stipple-clouds .model=${this.model}></stipple-clouds>
                 <stipple-measure .model=${this.model}></stipple-measure>
                 <stipple-clip .model=${this.model}></stipple-clip>
+                <stipple-annotations .model=${this.model}></stipple-annotations>
                 <stipple-look .model=${this.model}></stipple-look>
                 <stipple-scene .model=${this.model}></stipple-scene>
             </div>
