@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 
 namespace stipple {
 namespace {
@@ -21,6 +22,19 @@ using namespace gles;
 constexpr std::string_view withoutFloats =
     "this graphics driver can't blend into floating-point colours (EXT_color_buffer_float): points are drawn "
     "without high-quality splats";
+
+// Diameter of the largest point that the driver draws, pixels (OpenGL ES 3.0 §2.8: at least 1).
+int largestPoint() {
+    GLfloat range[2] = {1, 1};
+    glGetFloatv(GL_ALIASED_POINT_SIZE_RANGE, range);
+    return static_cast<int>(range[1]);
+}
+int largestSide() {
+    GLint texture = 0, viewport[2] = {0, 0};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+    return std::min({maxPictureSide, texture, viewport[0], viewport[1]});
+}
 
 constexpr ExpansionCosts expansionCosts{3, 1};
 
@@ -44,8 +58,10 @@ bool takesPointsDirectly(unsigned target) {
 
 class Gles3Renderer final : public GlesRenderer {
   public:
-    Status init(FloatBlending most) {
+    Status init(FloatBlending most, int mostPointPixels) {
         floatBlending_ = std::min(most, floatBlending());
+        pointPixels_ = std::min(mostPointPixels, largestPoint());
+        pictureSide_ = largestSide();
         // What does not compile is told at once.
         for (bool lowWords : {false, true})
             for (bool circle : {false, true})
@@ -63,7 +79,7 @@ class Gles3Renderer final : public GlesRenderer {
         RasterFrame frame = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
         bool blends = frame.splats && floatBlending_ != FloatBlending::none;
-        limitation_ = frame.splats && !blends ? withoutFloats : "";
+        limitation_ = limitationOf(frame, blends);
         bool direct = !edl.enabled && !blends && directTo(target);
         if (!direct)
             STIPPLE_CHECK(points_.resize(plan.width, plan.height));
@@ -132,12 +148,22 @@ class Gles3Renderer final : public GlesRenderer {
         return {};
     }
 
-    static Status checkSize(const FramePlan& plan) {
-        if (plan.width < 1 || plan.height < 1 || plan.width > maxPictureSide || plan.height > maxPictureSide)
+    Status checkSize(const FramePlan& plan) const {
+        if (plan.width < 1 || plan.height < 1 || plan.width > pictureSide_ || plan.height > pictureSide_)
             return Error{ErrorCode::invalidArgument,
                          cat("a picture of ", plan.width, " × ", plan.height, " pixels can't be drawn"), "",
-                         cat("each side must be in 1..", maxPictureSide)};
+                         cat("each side must be in 1..", pictureSide_, " with this graphics driver")};
         return {};
+    }
+
+    std::string limitationOf(const RasterFrame& frame, bool blends) const {
+        std::string told(frame.splats && !blends ? withoutFloats : "");
+        bool sized = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
+        int largest = ((sized ? frame.maxSize64 : frame.size64) + sizeSteps - 1) / sizeSteps;
+        if (largest > pointPixels_)
+            told += cat(told.empty() ? "" : "; ", "this graphics driver draws points of at most ",
+                        pointPixels_, " pixels: larger ones are cut down to that");
+        return told;
     }
 
     // The default framebuffer never changes its kind, so it is asked once.
@@ -314,7 +340,8 @@ class Gles3Renderer final : public GlesRenderer {
     CentreTarget centres_; // delayed expansion
     SumTarget sums_;       // splats
     FloatBlending floatBlending_ = FloatBlending::none;
-    std::string_view limitation_;
+    int pointPixels_ = maxPointPixels, pictureSide_ = maxPictureSide;
+    std::string limitation_;
     NodeBuffers nodes_;
     DepthReader depthReader_;
     Picker picker_;
@@ -323,9 +350,10 @@ class Gles3Renderer final : public GlesRenderer {
 
 } // namespace
 
-Result<std::unique_ptr<GlesRenderer>> GlesRenderer::create(gles::FloatBlending mostBlending) {
+Result<std::unique_ptr<GlesRenderer>> GlesRenderer::create(gles::FloatBlending mostBlending,
+                                                           int mostPointPixels) {
     auto renderer = std::make_unique<Gles3Renderer>();
-    STIPPLE_CHECK(renderer->init(mostBlending));
+    STIPPLE_CHECK(renderer->init(mostBlending, mostPointPixels));
     return std::unique_ptr<GlesRenderer>(std::move(renderer));
 }
 

@@ -21,9 +21,10 @@ enum class FloatBlending { none, half, full };
 class GlesRenderer {
   public:
     // unsupported: the context lacks a feature that is needed, or a shader does not compile (with its log).
-    // `mostBlending`: to try what happens where a context has less.
+    // `mostBlending`, `mostPointPixels`: to try what happens where a context has less.
     static Result<std::unique_ptr<GlesRenderer>>
-    create(gles::FloatBlending mostBlending = gles::FloatBlending::full);
+    create(gles::FloatBlending mostBlending = gles::FloatBlending::full,
+           int mostPointPixels = maxPointPixels);
     virtual ~GlesRenderer() = default; // frees every GL object; the context must still be current
 
     // Draws into framebuffer `target` (0: the default one), plan.width × plan.height. Uploads nodes it has

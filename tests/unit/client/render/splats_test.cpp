@@ -174,3 +174,41 @@ TEST_CASE("a context without floating-point colours draws plain points and says 
     CHECK(glesPicture(*context, **gles, plan).rgba == splats.rgba);
     CHECK((*gles)->limitation().empty());
 }
+
+TEST_CASE("a context that draws no point as large as the style asks for says so", "[gles]") {
+    auto* context = eglContext();
+    if (!context)
+        return;
+    auto gles = GlesRenderer::create(gles::FloatBlending::full, 5);
+    REQUIRE(gles.ok());
+    Style style;
+    style.sizePixels = 5;
+    FramePlan plan = testPlan(nodesOf(), {}, style);
+    glesPicture(*context, **gles, plan);
+    CHECK((*gles)->limitation().empty());
+    plan.style.sizePixels = 5.1;
+    glesPicture(*context, **gles, plan);
+    CHECK((*gles)->limitation().find("at most 5 pixels") != std::string_view::npos);
+    // Sizes that are not known before points are placed: the largest that the style allows.
+    plan.style.sizePixels = 1;
+    plan.style.sizeMode = PointSizeMode::world;
+    glesPicture(*context, **gles, plan);
+    CHECK((*gles)->limitation().find("at most 5 pixels") != std::string_view::npos);
+    plan.style.maxSizePixels = 5;
+    glesPicture(*context, **gles, plan);
+    CHECK((*gles)->limitation().empty());
+}
+
+TEST_CASE("a picture larger than the driver draws is refused with its limit", "[gles]") {
+    auto* context = eglContext();
+    if (!context)
+        return;
+    auto gles = GlesRenderer::create();
+    REQUIRE(gles.ok());
+    FramePlan plan = testPlan(nodesOf(), {}, {});
+    plan.width = maxPictureSide + 1;
+    Status drawn = (*gles)->draw(plan);
+    REQUIRE_FALSE(drawn.ok());
+    CHECK(drawn.error().code == ErrorCode::invalidArgument);
+    CHECK(drawn.error().sentence().find("each side must be in 1..") != std::string::npos);
+}
