@@ -1,6 +1,6 @@
 // What selection and session leave out because it can't show. All of it is left out, unless somebody measures
 // what that is worth (`stipple bench`): without a skip the picture stays the same, but for what a budget is
-// spent on.
+// spent on, and for nodes drawn whole (tooFine), which show exact colours instead of means.
 #pragma once
 
 namespace stipple {
