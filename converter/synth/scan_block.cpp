@@ -19,6 +19,7 @@ ScanColumns::ScanColumns(const Schema& schema) {
     red = schema.find(n::red);
     green = schema.find(n::green);
     blue = schema.find(n::blue);
+    normal = {schema.find("NormalX"), schema.find("NormalY"), schema.find("NormalZ")};
 }
 
 namespace {
@@ -63,6 +64,9 @@ PointBatch scanPulses(const Scanner& scanner, const Source& source, std::uint64_
             batch.setValue<std::uint16_t>(columns.red, size, colour16(r.colour.r));
             batch.setValue<std::uint16_t>(columns.green, size, colour16(r.colour.g));
             batch.setValue<std::uint16_t>(columns.blue, size, colour16(r.colour.b));
+            for (int axis = 0; axis < 3; ++axis)
+                if (int column = columns.normal[static_cast<std::size_t>(axis)]; column >= 0)
+                    batch.setValue<float>(column, size, static_cast<float>(r.normal[axis]));
             ++size;
         }
     }

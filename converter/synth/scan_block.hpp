@@ -13,6 +13,7 @@ struct ScanColumns {
     int intensity, returnNumber, numberOfReturns, scanDirection, edge, classification, scanAngle, source,
         gpsTime;
     int red, green, blue;
+    std::array<int, 3> normal; // NormalX, NormalY, NormalZ; -1: not wanted
 };
 
 // Pulses [first, first + count) of the source.

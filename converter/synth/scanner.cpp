@@ -100,6 +100,7 @@ void Scanner::measure(const Source& source, std::uint64_t index, const Pulse& pu
         r.intensity = found[i].energy * static_cast<double>(look.reflectance) * (0.15 + 0.85 * cosine) *
                       spread * (1 + 0.04 * powerError);
         r.colour = photograph(hit, look, random);
+        r.normal = hit.normal * (dot(hit.normal, pulse.ray.direction) > 0 ? -1.0 : 1.0);
         r.classification = look.classification;
         r.number = static_cast<std::uint8_t>(i + 1);
         r.count = static_cast<std::uint8_t>(count);

@@ -14,6 +14,7 @@ struct Return {
     double range = 0;     // without noise
     double intensity = 0; // 0..1
     Rgb colour;
+    Vec3d normal; // of the surface, towards the scanner; length 1
     std::uint8_t classification = 0, number = 0, count = 0;
 };
 

@@ -92,6 +92,8 @@ void addSynthVerb(CLI::App& program, cli::Action& action) {
                      "Deviation of the range error, metres; 0: every point exactly on the surface")
         ->check(cli::number(0, 10))
         ->capture_default_str();
+    verb->add_flag("--normals", arguments->options.normals,
+                   "Also write the normals of the surfaces, towards the scanner: NormalX, NormalY, NormalZ");
     verb->add_flag("--json", arguments->json, "Print the report as JSON");
     verb->add_flag("--quiet", arguments->quiet, "No progress");
     verb->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });

@@ -158,8 +158,12 @@ const std::string& crsWkt() {
     return wkt;
 }
 
-Schema scanSchema() {
-    return las::schemaOf(7);
+Schema scanSchema(bool normals) {
+    Schema schema = las::schemaOf(7);
+    if (normals)
+        for (const char* name : {"NormalX", "NormalY", "NormalZ"})
+            schema.attributes.push_back({name, AttributeType::f32});
+    return schema;
 }
 
 Result<SynthReport> scanScene(const Scene& scene, const SynthOptions& options, const PointSink& sink,
@@ -168,7 +172,7 @@ Result<SynthReport> scanScene(const Scene& scene, const SynthOptions& options, c
     Plan plan = planScan(scene, scanner, options);
     if (plan.sources.empty())
         return Error{ErrorCode::limitExceeded, "no strip or station sees the scene", "", "use another seed"};
-    Schema schema = scanSchema();
+    Schema schema = scanSchema(options.normals);
     ScanColumns columns(schema);
     Grid grid = gridOf(scene);
     auto scan = [&](std::size_t source, std::uint64_t block) {
@@ -207,7 +211,7 @@ Result<SynthReport> synthesize(const std::string& path, const SynthOptions& opti
     auto scene = Scene::make(options.scene, options.seed, sideFor(options.scene, options.points));
     las::WriterOptions writing;
     writing.grid = gridOf(*scene);
-    writing.schema = scanSchema();
+    writing.schema = scanSchema(options.normals);
     writing.pointFormat = 7;
     writing.versionMinor = 4;
     writing.wkt = crsWkt();

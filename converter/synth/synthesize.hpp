@@ -24,6 +24,7 @@ struct SynthOptions {
     std::uint64_t seed = 1;
     unsigned threads = 1;
     double noiseMeters = 0.01; // deviation of the range error
+    bool normals = false;      // NormalX, NormalY, NormalZ (float32) of the surfaces, towards the scanner
 };
 
 struct SynthReport {
@@ -41,8 +42,8 @@ double sideFor(SceneKind kind, std::uint64_t points);
 Grid gridOf(const Scene& scene);
 // The CRS of the scene's world coordinates: WGS 84 / UTM zone 32N as WKT 1.
 const std::string& crsWkt();
-// Attributes of the points: LAS point format 7.
-Schema scanSchema();
+// Attributes of the points: LAS point format 7, and normals in extra bytes where they are wanted.
+Schema scanSchema(bool normals = false);
 
 // Takes the points in order, a batch at a time.
 using PointSink = std::function<Status(const PointBatch&)>;

@@ -168,6 +168,37 @@ TEST_CASE("later returns are further away, and only what lets a beam by gives mo
     }
 }
 
+TEST_CASE("normals are of length 1, towards the scanner, and change nothing else") {
+    SynthOptions options;
+    options.points = 20'000;
+    options.seed = 5;
+    Scan without = scanOf(options);
+    options.normals = true;
+    Scan with = scanOf(options);
+    ScanColumns c(scanSchema(true));
+    CHECK(ScanColumns(scanSchema()).normal == std::array{-1, -1, -1});
+    REQUIRE(with.batches.size() == without.batches.size());
+    std::size_t roads = 0, level = 0;
+    for (std::size_t b = 0; b < with.batches.size(); ++b) {
+        const PointBatch& batch = with.batches[b];
+        REQUIRE(batch.positions == without.batches[b].positions);
+        for (std::size_t column = 0; column < without.batches[b].columns.size(); ++column)
+            REQUIRE(batch.columns[column] == without.batches[b].columns[column]);
+        for (std::size_t i = 0; i < batch.size(); ++i) {
+            Vec3d n;
+            for (int axis = 0; axis < 3; ++axis)
+                n[axis] = double{batch.value<float>(c.normal[static_cast<std::size_t>(axis)], i)};
+            REQUIRE(std::abs(length(n) - 1) < 1e-6);
+            if (batch.value<std::uint8_t>(c.classification, i) == classes::road) { // seen from above
+                ++roads;
+                level += n.z > 0.9;
+            }
+        }
+    }
+    CHECK(roads > 100);
+    CHECK(level == roads);
+}
+
 TEST_CASE("time runs on, and strips and stations have numbers of their own") {
     Scan scan = scanOf(SceneKind::town, 50'000);
     ScanColumns c(scanSchema());
