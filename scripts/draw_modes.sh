@@ -1,21 +1,26 @@
 #!/usr/bin/env bash
-# Draws the ways of drawing for docs/STYLE.md: scripts/draw_modes.sh LIDAR.stipple CLASSIFIED.stipple
+# Draws the ways of drawing for docs/STYLE.md: scripts/draw_modes.sh LIDAR.stipple CLASSIFIED.stipple NORMALS.stipple
 #   LIDAR        a coloured airborne scan in feet: the docs show autzen
 #   CLASSIFIED   one with classes, returns and times: the docs show an IGN tile
+#   NORMALS      one with normals: the docs show `stipple synth --points 2000000 --normals`
 # Writes docs/pictures/modes/NAME.png, 400 × 250 pixels. Needs the program that scripts/test.sh builds. Lines of the list:
-# a or b, the cloud|name|style as JSON|further options
+# a, b or n, the cloud|name|style as JSON|further options
 set -euo pipefail
-[ $# = 2 ] || { echo "usage: scripts/draw_modes.sh LIDAR.stipple CLASSIFIED.stipple" >&2; exit 2; }
-a=$(realpath "$1") b=$(realpath "$2")
+[ $# = 3 ] || { echo "usage: scripts/draw_modes.sh LIDAR.stipple CLASSIFIED.stipple NORMALS.stipple" >&2; exit 2; }
+a=$(realpath "$1") b=$(realpath "$2") n=$(realpath "$3")
 cd "$(dirname "$0")/.."
 stipple=${STIPPLE:-build/release/client/headless/stipple}
 out=docs/pictures/modes
 mkdir -p "$out"
 near='{"position": [636700, 850200, 760], "target": [637200, 851000, 420]}'
 trees='{"position": [484935, 6632905, 165], "target": [484845, 6632775, 105]}'
+houses='{"position": [499985, 5399955, 22], "target": [500020, 5400010, 6]}'
 while IFS='|' read -r which name style options; do
-  cloud=$a view=$near
-  [ "$which" = a ] || cloud=$b view=$trees
+  case $which in
+    a) cloud=$a view=$near ;;
+    b) cloud=$b view=$trees ;;
+    n) cloud=$n view=$houses ;;
+  esac
   # shellcheck disable=SC2086
   "$stipple" render "$cloud" -o "$out/$name.png" --size 400x250 --view "$view" --style "$style" $options >/dev/null
 done <<'LIST'
@@ -26,6 +31,8 @@ a|pixels|{"shape": "square", "sizePixels": 1, "edl": {"enabled": false}}|--budge
 a|squares|{"shape": "square", "sizePixels": 4, "edl": {"enabled": false}}|
 a|circles|{"shape": "circle", "sizePixels": 4, "edl": {"enabled": false}}|
 a|paraboloids|{"shape": "paraboloid", "sizePixels": 8, "edl": {"enabled": false}}|
+n|discs|{"shape": "disc", "sizeMode": "world", "sizeWorld": 0.5, "edl": {"enabled": false}}|--budget 3000000
+n|discs_circles|{"shape": "circle", "sizeMode": "world", "sizeWorld": 0.5, "edl": {"enabled": false}}|--budget 3000000
 a|splats|{"splats": {"enabled": true}, "sizePixels": 6, "edl": {"enabled": false}}|
 a|world_size|{"sizeMode": "world", "sizeWorld": 12, "edl": {"enabled": false}}|--budget 200000
 a|adaptive_size|{"sizeMode": "adaptive", "sizeSpacings": 2, "edl": {"enabled": false}}|--budget 200000

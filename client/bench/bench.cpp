@@ -2,6 +2,7 @@
 
 #include "client/bench/reference_cache.hpp"
 #include "client/bench/replay.hpp"
+#include "client/core/attribute_needs.hpp"
 #include "client/core/frame_planner.hpp"
 #include "client/measure/comparison.hpp"
 #include "client/measure/flip.hpp"
@@ -73,6 +74,8 @@ class CloudBench {
         STIPPLE_CHECK(open());
         STIPPLE_CHECK(drawReferences());
         for (const Mode& mode : options_.modes) {
+            if (std::string lack = lackOf(mode.style, *metadata_, info_.name); !lack.empty())
+                info_.limitations.push_back(cat(mode.name, ": ", lack));
             STIPPLE_TRY(drawer, headless::FrameDrawer::create(mode.backend, options_.threads));
             for (std::uint64_t budget : budgetsOf(mode))
                 for (const CameraPath& path : info_.paths)

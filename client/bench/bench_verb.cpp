@@ -166,6 +166,9 @@ Status run(const Words& words) {
     if (!words.quiet)
         options.progress = ProgressLines();
     STIPPLE_TRY(result, runBench(options));
+    for (const CloudResult& cloud : result.clouds)
+        for (const std::string& sentence : cloud.limitations)
+            std::fprintf(stderr, "warning: %s\n", sentence.c_str());
     STIPPLE_CHECK(writeReports(words.output, result));
     if (words.json) {
         nlohmann::json answer = toJson(result);

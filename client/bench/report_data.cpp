@@ -117,7 +117,8 @@ json toJson(const BenchResult& result) {
                           {"points", cloud.points},
                           {"pointHash", cloud.pointHash},
                           {"bounds", stipple::toJson(cloud.bounds)},
-                          {"paths", listOf(cloud.paths)}});
+                          {"paths", listOf(cloud.paths)},
+                          {"limitations", cloud.limitations}});
     for (const Run& run : result.runs)
         runs.push_back({{"cloud", run.cloud},
                         {"path", run.path},

@@ -1,7 +1,9 @@
 #include "client/core/attribute_needs.hpp"
 
 #include "client/core/node_columns.hpp"
+#include "client/core/node_normals.hpp"
 #include "client/core/node_paint.hpp"
+#include "shared/base/text.hpp"
 #include "shared/format/cloud_file.hpp"
 
 #include <algorithm>
@@ -42,11 +44,9 @@ bool contains(const std::vector<int>& list, int value) {
     return std::find(list.begin(), list.end(), value) != list.end();
 }
 
-} // namespace
-
-AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata) {
+AttributeNeeds needsOf(const ColourStyle& style, const std::set<int>& attributes,
+                       const CloudMetadata& metadata) {
     AttributeNeeds needs;
-    std::set<int> attributes = attributesOf(style, metadata.schema);
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     for (std::size_t b = 0; b < blocks.size(); ++b) {
         bool looksAt = std::any_of(attributes.begin(), attributes.end(),
@@ -59,6 +59,20 @@ AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata) 
         }
     }
     return needs;
+}
+
+} // namespace
+
+AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata) {
+    return needsOf(style, attributesOf(style, metadata.schema), metadata);
+}
+
+AttributeNeeds needsOf(const Style& style, const CloudMetadata& metadata) {
+    std::set<int> attributes = attributesOf(style, metadata.schema);
+    if (style.shape == PointShape::disc)
+        if (auto normals = normalAttributes(metadata.schema))
+            attributes.insert(normals->begin(), normals->end());
+    return needsOf(style, attributes, metadata);
 }
 
 AttributeNeeds needsOfAll(const ColourStyle& style, const CloudMetadata& metadata) {
@@ -97,6 +111,20 @@ bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata) {
         double slack = 2e-6 * std::abs(known.scale);
         return filter.max < std::min(a, b) - slack || filter.min > std::max(a, b) + slack;
     });
+}
+
+std::string lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName) {
+    if (style.shape != PointShape::disc)
+        return {};
+    bool singlePixels =
+        style.sizeMode == PointSizeMode::fixed && std::max(style.sizePixels, style.minSizePixels) <= 1;
+    if (normalAttributes(metadata.schema))
+        return singlePixels
+                   ? "points of a single pixel have no shape: discs show from a sizePixels above 1 on"
+                   : "";
+    return cat(cloudName,
+               " has no normals (attributes NormalX, NormalY, NormalZ, or nx, ny, nz): its points are "
+               "drawn as circles, not as discs");
 }
 
 std::uint32_t columnBytes(const AttributeNeeds& needs, const CloudMetadata& metadata) {

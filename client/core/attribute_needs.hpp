@@ -2,9 +2,11 @@
 // at all.
 #pragma once
 
-#include "client/core/colour_style.hpp"
+#include "client/core/style.hpp"
 #include "shared/format/cloud_metadata.hpp"
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace stipple {
@@ -18,11 +20,17 @@ struct AttributeNeeds {
     friend bool operator==(const AttributeNeeds&, const AttributeNeeds&) = default;
 };
 AttributeNeeds needsOf(const ColourStyle& style, const CloudMetadata& metadata);
+// With the normals, where the style draws discs.
+AttributeNeeds needsOf(const Style& style, const CloudMetadata& metadata);
 // The same with every attribute of the cloud.
 AttributeNeeds needsOfAll(const ColourStyle& style, const CloudMetadata& metadata);
 
 // The cloud's statistics say that filters and hidden classes hide every point.
 bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata);
+
+// What the style asks for that can't be shown of the cloud, and what is drawn instead: a sentence. Empty:
+// nothing.
+std::string lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName);
 
 // Bytes of a point's columns in the blocks of `needs`.
 std::uint32_t columnBytes(const AttributeNeeds& needs, const CloudMetadata& metadata);

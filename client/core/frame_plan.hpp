@@ -22,6 +22,7 @@
 #pragma once
 
 #include "client/core/counters.hpp"
+#include "client/core/node_normals.hpp"
 #include "client/core/node_paint.hpp"
 #include "client/core/rank_density.hpp"
 #include "client/core/resident_node.hpp"
@@ -56,13 +57,14 @@ struct DrawNode {
     std::shared_ptr<const ResidentNode> node;
     // Colours and hidden points, of all of the node's points; null: its own colour words, all of them shown.
     std::shared_ptr<const NodePaint> paint;
-    std::uint32_t pointCount = 0;             // draw this prefix; <= node->pointCount
-    std::array<std::int32_t, 3> cameraCell{}; // see above; >= 0
-    std::array<float, 3> cameraFraction{};    // see above
-    std::array<double, 3> cameraOffset{};     // the same, before it was rounded to float
-    Vec3d scale;                              // world units per integer
-    double spacing = 0;                       // minimum distance of the node's points, world units
-    RankDensity density;                      // of its points by rank, for continuous detail
+    std::shared_ptr<const NodeNormals> normals; // of all of the node's points; null: discs are circles
+    std::uint32_t pointCount = 0;               // draw this prefix; <= node->pointCount
+    std::array<std::int32_t, 3> cameraCell{};   // see above; >= 0
+    std::array<float, 3> cameraFraction{};      // see above
+    std::array<double, 3> cameraOffset{};       // the same, before it was rounded to float
+    Vec3d scale;                                // world units per integer
+    double spacing = 0;                         // minimum distance of the node's points, world units
+    RankDensity density;                        // of its points by rank, for continuous detail
     std::uint32_t cloud = 0; // whose node it is (CloudId of the session); nodes of one octree have the same
 
     // A point each (NodePaint::words); empty: all points are plain (plainColourWord).

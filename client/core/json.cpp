@@ -2,6 +2,7 @@
 
 #include "client/core/colour_json.hpp"
 #include "client/core/json_fields.hpp"
+#include "client/core/node_normals.hpp"
 #include "shared/points/point_classes.hpp"
 
 namespace stipple {
@@ -35,10 +36,11 @@ constexpr Names<DetailMode, 2> detailModes{{
     {"discrete", DetailMode::discrete},
     {"continuous", DetailMode::continuous},
 }};
-constexpr Names<PointShape, 3> shapes{{
+constexpr Names<PointShape, 4> shapes{{
     {"square", PointShape::square},
     {"circle", PointShape::circle},
     {"paraboloid", PointShape::paraboloid},
+    {"disc", PointShape::disc},
 }};
 constexpr Names<DelayedExpansion, 3> expansions{{
     {"off", DelayedExpansion::off},
@@ -316,6 +318,7 @@ json toJson(const CloudState& cloud) {
         value["crs"] = cloud.metadata->crs.name;
         value["attributes"] = std::move(attributes);
         value["classes"] = classesJson(*cloud.metadata);
+        value["hasNormals"] = normalAttributes(cloud.metadata->schema).has_value();
     }
     return value;
 }

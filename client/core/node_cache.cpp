@@ -19,8 +19,8 @@ std::vector<std::shared_ptr<const NodeColumns>> CachedNode::columns() const {
 }
 
 std::uint64_t CachedNode::sizeBytes() const {
-    std::uint64_t bytes =
-        sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) + (paint ? paint->sizeBytes() : 0);
+    std::uint64_t bytes = sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) +
+                          (paint ? paint->sizeBytes() : 0) + (normals ? normals->sizeBytes() : 0);
     for (const CachedBlock& cached : blocks)
         bytes += sizeof cached + (cached.columns ? cached.columns->sizeBytes() : 0);
     return bytes;

@@ -2,6 +2,7 @@
 // byte twice) and the decoded points. Bounded in bytes; the least recently used go first.
 #pragma once
 
+#include "client/core/node_normals.hpp"
 #include "client/core/node_paint.hpp"
 #include "client/core/resident_node.hpp"
 #include "shared/base/bytes.hpp"
@@ -46,6 +47,7 @@ struct CachedNode {
     std::vector<CachedBlock> blocks;
     std::shared_ptr<const NodePaint> paint; // as of paintKey; null: the node needs none
     PaintKey paintKey;
+    std::shared_ptr<const NodeNormals> normals; // packed of the blocks, once discs were drawn
 
     const CachedBlock* block(int index) const;
     bool hasBlock(int index) const { return block(index) && block(index)->columns; }

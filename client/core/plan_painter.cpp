@@ -36,4 +36,11 @@ bool PlanPainter::paint(const CloudLoader& cloud, std::uint32_t node, bool exact
     return true;
 }
 
+bool PlanPainter::orient(const CloudLoader& cloud, CachedNode& cached) {
+    if (cached.normals)
+        return false;
+    cached.normals = packNormals(cloud.opened.metadata->schema, cached.columns());
+    return cached.normals != nullptr;
+}
+
 } // namespace stipple

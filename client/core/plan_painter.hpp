@@ -24,6 +24,9 @@ class PlanPainter {
     // Renews `cached.paint` of a resident node where it is not of now. True if it did.
     bool paint(const CloudLoader& cloud, std::uint32_t node, bool exact, CachedNode& cached);
 
+    // Packs the normals of a node, once their blocks are here. True if it did.
+    static bool orient(const CloudLoader& cloud, CachedNode& cached);
+
   private:
     SessionCounters& counters_;
     Style style_;

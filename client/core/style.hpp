@@ -12,8 +12,11 @@ namespace stipple {
 // where the point lies (Potree thesis §4.3.3).
 enum class PointSizeMode : std::uint8_t { fixed, world, spacing, adaptive };
 // Paraboloids are circles bent away from the camera: where they overlap, each pixel shows the point nearest
-// to it, as a Voronoi diagram does (Potree thesis §4.2.3). Splats take them as circles.
-enum class PointShape : std::uint8_t { square, circle, paraboloid };
+// to it, as a Voronoi diagram does (Potree thesis §4.2.3). Splats take them as circles. Discs lie in the
+// plane perpendicular to the point's normal, two-sided, and have its depth (Botsch et al. 2005; Brandt et al.
+// 2019, §4.2); their normals are fetched for them alone (client/core/node_normals.hpp), and points without
+// are circles.
+enum class PointShape : std::uint8_t { square, circle, paraboloid, disc };
 
 struct EyeDomeLighting {
     bool enabled = true;

@@ -138,6 +138,7 @@ class Session final : public ViewSession {
     std::optional<Error> passingFailure() const override { return loading_.passingFailure(); }
 
   private:
+    bool drawsDiscs() const { return style_.shape == PointShape::disc; }
     static bool shown(const CloudLoader& cloud) { return cloud.ready() && cloud.state.visible; }
     // Whether both styles want the same nodes and attributes.
     static bool loadsAlike(const Style& a, const Style& b) {
@@ -148,7 +149,8 @@ class Session final : public ViewSession {
         other.elevationRange = a.elevationRange;
         other.levelRange = a.levelRange;
         other.attributeRange = a.attributeRange;
-        return static_cast<const ColourStyle&>(a) == other && a.detail == b.detail;
+        bool orientAlike = (a.shape == PointShape::disc) == (b.shape == PointShape::disc);
+        return static_cast<const ColourStyle&>(a) == other && a.detail == b.detail && orientAlike;
     }
 
     // --- selecting and asking --------------------------------------------------------------------------
@@ -227,8 +229,9 @@ class Session final : public ViewSession {
         bool wide = metadata.rootCube.bits > positionWordBits;
         bool painted = style_.colourMode != ColourMode::rgb || cloud.needs.exactBlock >= 0 ||
                        !style_.clipBoxes.empty() || hidesPoints(style_);
-        return 12u + (wide ? 4u : 0u) + (painted ? 4u : 0u) + columnBytes(cloud.needs, metadata) +
-               (cloud.needs.exactBlock >= 0 ? 4u : 0u);
+        bool oriented = drawsDiscs() && normalAttributes(metadata.schema);
+        return 12u + (wide ? 4u : 0u) + (painted ? 4u : 0u) + (oriented ? 4u : 0u) +
+               columnBytes(cloud.needs, metadata) + (cloud.needs.exactBlock >= 0 ? 4u : 0u);
     }
 
     // Attributes that the style does not use are kept while there is room, and are the first to go.
@@ -238,12 +241,13 @@ class Session final : public ViewSession {
             if (cloud == loading_.clouds().end())
                 return false;
             const AttributeNeeds& needs = cloud->second.needs;
+            bool packed = !drawsDiscs() && std::exchange(cached.normals, nullptr) != nullptr;
             auto dropped = std::erase_if(cached.blocks, [&](const CachedBlock& one) {
                 return !one.decoding && one.block != needs.exactBlock &&
                        std::find(needs.blocks.begin(), needs.blocks.end(), one.block) == needs.blocks.end();
             });
             counters_.columnsDropped += dropped;
-            return dropped > 0;
+            return dropped > 0 || packed;
         });
     }
 
@@ -340,7 +344,9 @@ class Session final : public ViewSession {
             CachedNode* cached = loading_.cache().find(key);
             bool exact =
                 exact_.contains({selected.cloud, selected.node}) && cached->hasBlock(cloud.needs.exactBlock);
-            if (painter_.paint(cloud, selected.node, exact, *cached))
+            bool painted = painter_.paint(cloud, selected.node, exact, *cached);
+            bool oriented = drawsDiscs() && PlanPainter::orient(cloud, *cached);
+            if (painted || oriented)
                 loading_.cache().recount(key);
             if (limits_.skips.hidden && cached->paint && cached->paint->hidden == cached->node->pointCount) {
                 ++next.counters.nodesHidden;
@@ -353,6 +359,8 @@ class Session final : public ViewSession {
             next.nodes.back().cloud = cloud.state.id;
             next.nodes.back().density = cloud.hierarchy.densityOf(selected.node);
             next.nodes.back().paint = cached->paint;
+            if (drawsDiscs())
+                next.nodes.back().normals = cached->normals;
             next.counters.pointsHidden += cached->paint ? cached->paint->hidden : 0;
             next.counters.nodesExact += exact;
         }
@@ -364,7 +372,8 @@ class Session final : public ViewSession {
 
     static bool samePicture(const FramePlan& a, const FramePlan& b) {
         auto sameNode = [](const DrawNode& x, const DrawNode& y) {
-            return x.node->id == y.node->id && x.colourId() == y.colourId() && x.pointCount == y.pointCount;
+            return x.node->id == y.node->id && x.colourId() == y.colourId() && x.normals == y.normals &&
+                   x.pointCount == y.pointCount;
         };
         return a.width == b.width && a.height == b.height && a.view == b.view && a.style == b.style &&
                a.detailPixels == b.detailPixels &&

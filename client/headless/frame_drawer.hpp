@@ -26,6 +26,8 @@ class FrameDrawer {
     // View distances of the plan that was drawn last; see GlesRenderer::distances.
     virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
     virtual std::string name() const = 0; // "software", or the GL driver
+    // GlesRenderer::limitation of the plan that was drawn last.
+    virtual std::string_view limitation() const { return {}; }
 };
 
 } // namespace stipple::headless

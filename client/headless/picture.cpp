@@ -1,5 +1,6 @@
 #include "client/headless/picture.hpp"
 
+#include "client/core/attribute_needs.hpp"
 #include "client/core/json.hpp"
 #include "client/headless/session_loader.hpp"
 #include "client/headless/thread_decoder.hpp"
@@ -67,6 +68,9 @@ class Session final : public PictureSession {
         picture.image = *image;
         picture.camera = camera;
         picture.frame = plan.counters;
+        for (std::string sentence : {lack(request.style), std::string(drawer->limitation())})
+            if (!sentence.empty())
+                picture.limitations.push_back(std::move(sentence));
         picture.session = session_->counters();
         return picture;
     }
@@ -95,6 +99,11 @@ class Session final : public PictureSession {
     }
 
   private:
+    // See lackOf().
+    std::string lack(const Style& style) const {
+        return lackOf(style, *session_->clouds().front().metadata, name_);
+    }
+
     // Loads what the request wants to be seen.
     Result<Camera> load(const PictureRequest& request) {
         STIPPLE_CHECK(checkRequest(request));

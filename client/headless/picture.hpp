@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace stipple::headless {
 
@@ -43,6 +44,8 @@ struct Picture {
     Camera camera;
     FrameCounters frame;
     SessionCounters session;
+    // What the style asked for that this cloud has not, or this driver can't do, and what was drawn instead.
+    std::vector<std::string> limitations;
     std::string renderer;                                     // "software", or the GL driver
     double openSeconds = 0, loadSeconds = 0, drawSeconds = 0; // until ready; until settled; drawing
 };

@@ -106,6 +106,8 @@ Status render(const Options& options) {
     STIPPLE_CHECK(file->append(png));
     STIPPLE_CHECK(file->commit());
 
+    for (const std::string& sentence : picture.limitations)
+        std::fprintf(stderr, "warning: %s\n", sentence.c_str());
     if (options.json) {
         nlohmann::json answer{
             {"output", options.output},
@@ -113,6 +115,7 @@ Status render(const Options& options) {
             {"height", picture.image.height},
             {"backend", options.backend},
             {"renderer", picture.renderer},
+            {"limitations", picture.limitations},
             {"camera", toJson(picture.camera)},
             {"frame", toJson(picture.frame)},
             {"session", toJson(picture.session)},

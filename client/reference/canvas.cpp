@@ -9,20 +9,6 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::infinity();
 
-// How far inside the mark a place lies that is (dx, dy) from its middle: > 0 inside, in pixels.
-double inside(const Mark& mark, double dx, double dy, PointShape shape) {
-    double farther = std::max(std::abs(dx), std::abs(dy)), radius = mark.diameter / 2;
-    double holdsMiddle = 0.5 - farther; // the pixel around the place: it always shows what lies in it
-    switch (shape) {
-    case PointShape::square:
-        return std::max(radius - farther, holdsMiddle);
-    case PointShape::circle:
-    case PointShape::paraboloid:
-        return std::max(radius - std::hypot(dx, dy), holdsMiddle);
-    }
-    return holdsMiddle;
-}
-
 // The last of it: a pixel that only its point's place covers shows that point all the same.
 double weightAt(const Mark& mark, double away, const Splats& splats) {
     double share = 2 * away / mark.diameter;
@@ -50,11 +36,10 @@ std::uint64_t Canvas::bytesFor(int width, int height, int samples, bool splats) 
            static_cast<std::uint64_t>(samples) * static_cast<std::uint64_t>(samples);
 }
 
-// visit(sample, how far inside, distance from the middle) for all samples that lie inside the mark grown by
-// `slack` pixels.
+// visit(sample, spot) for all samples that lie inside the mark, grown by the slack.
 template <class Visit>
-void Canvas::visitSamples(const Mark& mark, PointShape shape, double slack, const Visit& visit) const {
-    double reach = std::max(mark.diameter / 2, 0.5) + slack;
+void Canvas::visitSamples(const Mark& mark, PointShape shape, const Slack* slack, const Visit& visit) const {
+    double grown = slack ? slack->pixels : 0, reach = reachOf(mark, shape) + grown;
     auto first = [&](double middle, int count) {
         return static_cast<int>(
             std::clamp(std::floor((middle - reach) * samples_ - 0.5), 0.0, double(count)));
@@ -66,23 +51,11 @@ void Canvas::visitSamples(const Mark& mark, PointShape shape, double slack, cons
     for (int row = first(mark.y, rows_); row <= last(mark.y, rows_); ++row)
         for (int column = first(mark.x, columns_); column <= last(mark.x, columns_); ++column) {
             double dx = (column + 0.5) / samples_ - mark.x, dy = (row + 0.5) / samples_ - mark.y;
-            double depth = inside(mark, dx, dy, shape);
-            if (depth > -slack)
-                visit(at(column, row), depth, std::hypot(dx, dy));
+            Spot spot = spotOf(mark, dx, dy, shape, slack);
+            if (spot.inside > -grown)
+                visit(at(column, row), spot);
         }
 }
-
-namespace {
-
-// How far the mark is at a place so many pixels from its middle.
-double distanceAt(const Mark& mark, double away, PointShape shape) {
-    double share = 2 * away / mark.diameter;
-    double radius = mark.diameter / 2 * mark.unitsPerPixel;
-    bool bends = shape == PointShape::paraboloid && mark.diameter > 1; // single pixels are flat
-    return mark.distance + (bends ? radius * share * share : 0);
-}
-
-} // namespace
 
 PointShape drawnShape(const Style& style) {
     return style.splats.enabled && style.shape == PointShape::paraboloid ? PointShape::circle : style.shape;
@@ -90,12 +63,11 @@ PointShape drawnShape(const Style& style) {
 
 void Canvas::draw(std::span<const Mark> marks, PointShape shape) {
     for (const Mark& mark : marks)
-        visitSamples(mark, shape, 0, [&](std::size_t sample, double, double away) {
-            double distance = distanceAt(mark, away, shape);
+        visitSamples(mark, shape, nullptr, [&](std::size_t sample, const Spot& spot) {
             double held = distances_[sample];
-            if (distance > held || (distance == held && mark.order > orders_[sample]))
+            if (spot.distance > held || (spot.distance == held && mark.order > orders_[sample]))
                 return;
-            distances_[sample] = distance;
+            distances_[sample] = spot.distance;
             orders_[sample] = mark.order;
             colours_[sample] = mark.colour;
         });
@@ -104,10 +76,10 @@ void Canvas::draw(std::span<const Mark> marks, PointShape shape) {
 void Canvas::blend(std::span<const Mark> marks, const Style& style) {
     sums_.resize(distances_.size());
     for (const Mark& mark : marks)
-        visitSamples(mark, style.shape, 0, [&](std::size_t sample, double, double away) {
-            if (mark.distance - blendDepth(mark, style.splats) > distances_[sample])
+        visitSamples(mark, drawnShape(style), nullptr, [&](std::size_t sample, const Spot& spot) {
+            if (spot.distance - blendDepth(mark, style.splats) > distances_[sample])
                 return;
-            double weight = weightAt(mark, away, style.splats);
+            double weight = weightAt(mark, spot.away, style.splats);
             for (std::size_t c = 0; c < 3; ++c)
                 sums_[sample][c] += weight * double{mark.colour[c]};
             sums_[sample][3] += weight;
@@ -116,20 +88,25 @@ void Canvas::blend(std::span<const Mark> marks, const Style& style) {
 
 void Canvas::doubt(std::span<const Mark> marks, const Style& style, const Slack& slack) {
     doubtful_.resize(distances_.size());
+    distanceSlack_.resize(distances_.size());
     swings_.resize(sums_.size());
+    PointShape shape = drawnShape(style);
     for (const Mark& mark : marks)
-        visitSamples(mark, style.shape, slack.pixels, [&](std::size_t sample, double depth, double away) {
+        visitSamples(mark, shape, &slack, [&](std::size_t sample, const Spot& spot) {
+            if (orders_[sample] == mark.order)
+                distanceSlack_[sample] = spot.spread;
+        });
+    for (const Mark& mark : marks)
+        visitSamples(mark, shape, &slack, [&](std::size_t sample, const Spot& spot) {
             double nearest = distances_[sample];
             if (style.splats.enabled) {
-                doubtBlend(mark, sample, depth, away, style.splats, slack);
+                doubtBlend(mark, sample, spot, style.splats, slack);
                 return;
             }
             bool shown = orders_[sample] == mark.order;
-            bool mightLeave = shown && depth < slack.pixels;
-            // Two paraboloids bend by at most twice a pixel's width a pixel.
-            double bend = style.shape == PointShape::paraboloid ? 4 * mark.unitsPerPixel * slack.pixels : 0;
-            double distance = distanceAt(mark, away, style.shape);
-            bool mightCome = !shown && distance < nearest * (1 + slack.distance) + bend;
+            bool mightLeave = shown && spot.inside < slack.pixels;
+            double moves = spot.spread + distanceSlack_[sample];
+            bool mightCome = !shown && spot.distance < nearest * (1 + slack.distance) + moves;
             if (mightLeave || mightCome)
                 doubtful_[sample] = true;
         });
@@ -137,21 +114,22 @@ void Canvas::doubt(std::span<const Mark> marks, const Style& style, const Slack&
 
 // What a sample shows changes at once where its nearest point does, or where one comes within the blend
 // depth; and little by little with the weights.
-void Canvas::doubtBlend(const Mark& mark, std::size_t sample, double depth, double away, const Splats& splats,
+void Canvas::doubtBlend(const Mark& mark, std::size_t sample, const Spot& spot, const Splats& splats,
                         const Slack& slack) {
-    double nearest = distances_[sample];
-    bool movesNearest = std::abs(depth) < slack.pixels && mark.distance < nearest * (1 + slack.distance);
-    double beyond = mark.distance - blendDepth(mark, splats) - nearest;
+    double nearest = distances_[sample], moves = spot.spread + distanceSlack_[sample];
+    bool isEdge = std::abs(spot.inside) < slack.pixels;
+    bool movesNearest = isEdge && spot.distance < nearest * (1 + slack.distance) + moves;
+    double beyond = spot.distance - blendDepth(mark, splats) - nearest;
     bool mightBlend =
-        std::abs(beyond) < 2 * slack.distance * mark.distance + slack.pixels * mark.unitsPerPixel;
+        std::abs(beyond) < 2 * slack.distance * mark.distance + slack.pixels * mark.unitsPerPixel + moves;
     if (movesNearest || mightBlend)
         doubtful_[sample] = true;
     if (beyond > 0 || !(sums_[sample][3] > 0))
         return;
-    double change = weightAt(mark, std::max(0.0, away - slack.pixels), splats) -
-                    weightAt(mark, away + slack.pixels, splats);
-    if (std::abs(depth) < slack.pixels) // it might come or go
-        change = std::max(change, 2 * weightAt(mark, away, splats));
+    double change = weightAt(mark, std::max(0.0, spot.away - spot.wander), splats) -
+                    weightAt(mark, spot.away + spot.wander, splats);
+    if (isEdge) // it might come or go
+        change = std::max(change, 2 * weightAt(mark, spot.away, splats));
     double apart = 0;
     for (std::size_t c = 0; c < 3; ++c)
         apart = std::max(apart, std::abs(double{mark.colour[c]} - sums_[sample][c] / sums_[sample][3]));
@@ -232,6 +210,19 @@ std::vector<bool> Canvas::doubtful(const Style& style) const {
                                         [&](std::size_t neighbour) { any = any || doubtful_[neighbour]; });
                 }
             pixels.push_back(any);
+        }
+    return pixels;
+}
+
+std::vector<double> Canvas::distanceSlack() const {
+    std::vector<double> pixels;
+    for (int y = 0; y < rows_; y += samples_)
+        for (int x = 0; x < columns_; x += samples_) {
+            double most = 0;
+            for (int sy = y; sy < y + samples_; ++sy)
+                for (int sx = x; sx < x + samples_; ++sx)
+                    most = std::max(most, distanceSlack_[at(sx, sy)]);
+            pixels.push_back(most);
         }
     return pixels;
 }

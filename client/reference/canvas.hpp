@@ -5,19 +5,12 @@
 // Memory: 28 bytes a sample, with splats 60.
 #pragma once
 
-#include "client/reference/marks.hpp"
+#include "client/reference/spot.hpp"
 #include "client/render/image.hpp"
 
 #include <span>
 
 namespace stipple::reference {
-
-// How far a mark might be off, for pictures that are compared pixel by pixel.
-struct Slack {
-    double pixels = 0.01;
-    double levels = 2;      // splats: how much the mean may move with its weights
-    double distance = 4e-6; // relative: 2^-18, the coarsest depth step of a range of 32 octaves
-};
 
 // What the marks of a style are drawn as: splats take paraboloids as circles.
 PointShape drawnShape(const Style& style);
@@ -43,13 +36,16 @@ class Canvas {
     DepthImage finish(const Style& style) const;
     // Per pixel, after doubt(): whether any of its samples is in doubt, or one that lights it.
     std::vector<bool> doubtful(const Style& style) const;
+    // Per pixel, after doubt(): by how much the distance of what it shows changes if its mark is off by the
+    // slack. More than nothing for paraboloids and discs.
+    std::vector<double> distanceSlack() const;
 
   private:
     template <class Visit>
-    void visitSamples(const Mark& mark, PointShape shape, double slack, const Visit& visit) const;
+    void visitSamples(const Mark& mark, PointShape shape, const Slack* slack, const Visit& visit) const;
     template <class Visit>
     void visitNeighbours(const EyeDomeLighting& edl, int x, int y, const Visit& visit) const;
-    void doubtBlend(const Mark& mark, std::size_t sample, double depth, double away, const Splats& splats,
+    void doubtBlend(const Mark& mark, std::size_t sample, const Spot& spot, const Splats& splats,
                     const Slack& slack);
     Colour colourAt(std::size_t sample) const;
     double shadeOf(const EyeDomeLighting& edl, int x, int y) const;
@@ -63,6 +59,7 @@ class Canvas {
     std::vector<Colour> colours_;
     std::vector<std::array<double, 4>> sums_; // weighted colours, weights; empty before blend()
     std::vector<bool> doubtful_;              // empty before doubt()
+    std::vector<double> distanceSlack_;       // of what is shown; empty before doubt()
     std::vector<double> swings_;              // splats: how far the weights of doubt() move a colour, levels
 };
 

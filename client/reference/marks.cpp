@@ -1,6 +1,7 @@
 #include "client/reference/marks.hpp"
 
 #include "client/core/gradients.hpp"
+#include "client/core/node_normals.hpp"
 #include "shared/base/bytes.hpp"
 #include "shared/points/point_classes.hpp"
 
@@ -135,6 +136,9 @@ std::vector<std::string_view> neededAttributes(const Style& style, const CloudMe
         wanted.push_back(classification);
     for (const AttributeFilter& filter : style.filters)
         wanted.push_back(filter.attribute);
+    if (auto normals = normalAttributes(metadata.schema); normals && style.shape == PointShape::disc)
+        for (int index : *normals)
+            wanted.push_back(metadata.schema.attributes[static_cast<std::size_t>(index)].name);
     Points cloud;
     cloud.attributes = metadata.schema.attributes;
     std::vector<std::string_view> had;
@@ -243,20 +247,55 @@ std::vector<Colour> coloursOf(const Style& style, const Points& points) {
     return colours;
 }
 
+namespace {
+
+// Normals of the points in the camera's axes; zero where there is none.
+std::vector<Vec3d> normalsOf(const View& view, const Points& points) {
+    std::vector<Vec3d> normals(points.batch->size());
+    auto columns = normalAttributes({points.attributes});
+    for (std::size_t i = 0; columns && i < normals.size(); ++i) {
+        Vec3d n{meaningOf(points, (*columns)[0], i), meaningOf(points, (*columns)[1], i),
+                meaningOf(points, (*columns)[2], i)};
+        double size = std::hypot(n.x, n.y, n.z);
+        if (std::isfinite(size) && size > 0)
+            normals[i] = Vec3d{dot(n, view.right), dot(n, view.up), dot(n, view.forward)} * (1 / size);
+    }
+    return normals;
+}
+
+} // namespace
+
 void appendMarks(const View& view, const Style& style, const Points& points, std::vector<Mark>& marks) {
     std::vector<Colour> colours = coloursOf(style, points);
     highlight(style, points, colours);
     std::vector<bool> shown = shownOf(style, points);
+    bool discs = style.shape == PointShape::disc;
+    std::vector<Vec3d> normals = discs ? normalsOf(view, points) : std::vector<Vec3d>(points.batch->size());
     for (std::size_t i = 0; i < points.batch->size(); ++i) {
         Place at;
         if (!shown[i] || !place(view, worldOf(points, i), at))
             continue;
         double spacing = points.spacings.empty() ? 0 : points.spacings[i];
-        double diameter = diameterOf(style, view, at.distance, spacing), reach = diameter / 2 + 1;
+        double diameter = diameterOf(style, view, at.distance, spacing);
+        double reach = (discs ? mostDiscReach : diameter / 2) + 1;
         if (at.x + reach < 0 || at.y + reach < 0 || at.x - reach > view.width || at.y - reach > view.height)
             continue;
-        marks.push_back({at.x, at.y, at.distance, diameter, points.firstOrder + i, colours[i],
-                         1 / view.pixelsPerUnitAt(at.distance)});
+        Mark mark{at.x,
+                  at.y,
+                  at.distance,
+                  diameter,
+                  points.firstOrder + i,
+                  colours[i],
+                  1 / view.pixelsPerUnitAt(at.distance),
+                  normals[i]};
+        if (view.projection == Projection::perspective) {
+            mark.rayX = (at.x - 0.5 * view.width) / view.pixelsPerUnit;
+            mark.rayY = (0.5 * view.height - at.y) / view.pixelsPerUnit;
+            mark.slopePerPixel = 1 / view.pixelsPerUnit;
+        }
+        mark.near = view.near;
+        mark.far = view.far;
+        marks.push_back(mark);
     }
 }
 

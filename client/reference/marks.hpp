@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace stipple::reference {
@@ -39,7 +40,16 @@ struct Mark {
     std::uint64_t order = 0; // of two equally near marks the one of smaller order is in front
     Colour colour{};
     double unitsPerPixel = 0; // world units that a pixel spans at that distance
+    // Discs: perpendicular to it, in the camera's axes (right, up, forward), of length 1; zero: the disc
+    // faces the camera. And the ray of the point: slopes against `forward`, and by how much they change from
+    // pixel to pixel; zero in orthographic views.
+    Vec3d normal{};
+    double rayX = 0, rayY = 0, slopePerPixel = 0;
+    double near = 0, far = std::numeric_limits<double>::infinity(); // of the view
 };
+
+// No pixel that is farther from its point shows a disc.
+inline constexpr double mostDiscReach = 127.5;
 
 // Names of the attributes that the colours of a style need of a cloud; those it lacks are left out.
 std::vector<std::string_view> neededAttributes(const Style& style, const CloudMetadata& metadata);

@@ -35,6 +35,8 @@ void NodeBuffers::bind(const DrawNode& drawn) {
     }
     if (entry.colourId != drawn.colourId())
         bindColours(entry, drawn);
+    if (entry.normalsId != (drawn.normals ? drawn.normals->id : 0))
+        bindNormals(entry, drawn);
 }
 
 void NodeBuffers::bindColours(Entry& entry, const DrawNode& drawn) {
@@ -49,6 +51,21 @@ void NodeBuffers::bindColours(Entry& entry, const DrawNode& drawn) {
         glVertexAttribPointer(colourLocation, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0, nullptr);
     } else {
         glDisableVertexAttribArray(colourLocation); // plain
+    }
+}
+
+// Those of a node that is no longer drawn as discs go.
+void NodeBuffers::bindNormals(Entry& entry, const DrawNode& drawn) {
+    bytes_ -= entry.normalBytes;
+    entry.bytes -= entry.normalBytes;
+    entry.normals = Buffer();
+    entry.normalsId = drawn.normals ? drawn.normals->id : 0;
+    entry.normalBytes = drawn.normals ? 4 * drawn.normals->words.size() : 0;
+    if (drawn.normals && upload(entry, entry.normals, drawn.normals->words)) {
+        glEnableVertexAttribArray(normalLocation);
+        glVertexAttribIPointer(normalLocation, 1, GL_UNSIGNED_INT, 0, nullptr);
+    } else {
+        glDisableVertexAttribArray(normalLocation);
     }
 }
 

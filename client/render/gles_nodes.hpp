@@ -14,7 +14,12 @@ namespace stipple::gles {
 inline constexpr std::uint64_t maxIdleNodeBytes = 64ull << 20;
 
 // Locations of points.vert.glsl.
-enum PointAttribute : GLuint { positionLocation = 0, positionLowLocation = 1, colourLocation = 2 };
+enum PointAttribute : GLuint {
+    positionLocation = 0,
+    positionLowLocation = 1,
+    colourLocation = 2,
+    normalLocation = 3
+};
 
 class NodeBuffers {
   public:
@@ -31,15 +36,18 @@ class NodeBuffers {
   private:
     struct Entry {
         VertexArray array;
-        Buffer positions, lows, colours;
+        Buffer positions, lows, colours, normals;
         std::uint64_t colourId = 0; // DrawNode::colourId of what `colours` holds
         std::uint64_t colourBytes = 0;
+        std::uint64_t normalsId = 0; // NodeNormals::id of what `normals` holds; 0: nothing
+        std::uint64_t normalBytes = 0;
         std::uint64_t bytes = 0;
         std::uint64_t lastFrame = 0;
     };
 
     bool upload(Entry& entry, Buffer& buffer, const std::vector<std::uint32_t>& values);
     void bindColours(Entry& entry, const DrawNode& drawn);
+    void bindNormals(Entry& entry, const DrawNode& drawn);
 
     std::unordered_map<std::uint64_t, Entry> entries_;
     std::uint64_t bytes_ = 0;

@@ -71,7 +71,7 @@ Status Picker::prepareCentres() {
     if (centresFramebuffer_)
         return {};
     makeTexture(centrePoints_, GL_RGBA32UI, centreSide, centreSide);
-    makeTexture(centrePlaces_, GL_R32UI, centreSide, centreSide);
+    makeTexture(centrePlaces_, GL_RG32UI, centreSide, centreSide); // normals, too
     makeTexture(centreDepth_, GL_DEPTH_COMPONENT32F, centreSide, centreSide);
     glBindFramebuffer(GL_FRAMEBUFFER, centresFramebuffer_.make());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, centrePoints_.id(), 0);
@@ -83,7 +83,7 @@ Status Picker::prepareCentres() {
     Status made = checkGl("making the buffers for picking");
     if (made.ok() && !complete)
         made = Error{ErrorCode::unsupported,
-                     "the driver refuses a framebuffer of four and one 32-bit integers", "OpenGL ES 3.0", ""};
+                     "the driver refuses a framebuffer of four and two 32-bit integers", "OpenGL ES 3.0", ""};
     if (!made.ok())
         centresFramebuffer_ = Framebuffer();
     return made;

@@ -12,7 +12,9 @@ std::string definesFor(const PointVariant& variant) {
     std::string defines = variant.lowWords ? "#define LOW_WORDS\n" : "";
     defines += variant.circle ? "#define CIRCLE\n" : "";
     defines += variant.paraboloid ? "#define PARABOLOID\n" : "";
-    defines += variant.circle || variant.blend ? "#define CENTRED\n" : "";
+    defines += variant.disc ? "#define DISC\n" : "";
+    defines += variant.normals ? "#define NORMALS\n" : "";
+    defines += variant.circle || variant.disc || variant.blend ? "#define CENTRED\n" : "";
     defines += variant.collect ? "#define COLLECT\n" : "";
     defines += variant.blend ? "#define BLEND\n" : "";
     defines += variant.identity ? "#define IDENTITY\n" : "";
@@ -24,10 +26,11 @@ std::string definesFor(const PointVariant& variant) {
 
 } // namespace
 
-PointVariant PointVariant::of(const RasterFrame& frame, const ResidentNode& node) {
+PointVariant PointVariant::of(const RasterFrame& frame, const DrawNode& node) {
     PointVariant variant;
-    variant.lowWords = node.positionShift > 0;
-    variant.circle = frame.circle;
+    variant.lowWords = node.node->positionShift > 0;
+    variant.disc = variant.normals = frame.disc && node.normals;
+    variant.circle = frame.circle && !variant.disc;
     variant.paraboloid = frame.paraboloid;
     variant.adaptive = frame.adaptive;
     return variant;
@@ -83,6 +86,9 @@ Result<PointProgram> PointProgram::make(const PointVariant& variant) {
     made.nodeSize64 = at("uNodeSize64");
     made.radiusScale = at("uRadiusScale");
     made.blendFactor = at("uBlendFactor");
+    made.discAxes = at("uDiscAxes");
+    made.pixelUnits = at("uPixelUnits");
+    made.pixelSlope = at("uPixelSlope");
     made.nearest = at("uNearest");
     made.hardness = at("uHardness");
     made.nodeIndex = at("uNode");
@@ -111,6 +117,15 @@ void PointProgram::useFor(const RasterFrame& frame) const {
     glUniform1i(octree, octreeUnit);
     glUniform1f(radiusScale, frame.radiusScale);
     glUniform1f(blendFactor, frame.blendFactor);
+    std::array<float, 9> axes{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        axes[i] = frame.discRight[i];
+        axes[3 + i] = frame.discUp[i];
+        axes[6 + i] = frame.discForward[i];
+    }
+    glUniformMatrix3fv(discAxes, 1, GL_FALSE, axes.data());
+    glUniform1f(pixelUnits, frame.pixelUnits);
+    glUniform1f(pixelSlope, frame.pixelSlope);
     glUniform1i(nearest, nearestUnit);
     glUniform1i(hardness, frame.hardness);
     glUniform1i(centreColours, centreColoursUnit);

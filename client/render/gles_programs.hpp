@@ -15,6 +15,8 @@ struct PointVariant {
     bool lowWords = false; // nodes with a third position word
     bool circle = false;
     bool paraboloid = false; // circle, too
+    bool disc = false;       // never circle
+    bool normals = false;    // looks at normals: discs, and what collects for them
     bool adaptive = false;
     bool blend = false;         // the pass of splats that blends
     bool collect = false;       // the first pass of delayed expansion
@@ -23,7 +25,7 @@ struct PointVariant {
     bool identity = false;      // writes which point a pixel shows (client/render/pick.hpp), not its colour
 
     friend auto operator<=>(const PointVariant&, const PointVariant&) = default;
-    static PointVariant of(const RasterFrame& frame, const ResidentNode& node);
+    static PointVariant of(const RasterFrame& frame, const DrawNode& node);
 };
 
 // Texture units of the point programs.
@@ -42,6 +44,7 @@ struct PointProgram {
 
     GLint octree, octreePlace, nodeBits, nodeSize64;
     GLint radiusScale, blendFactor, nearest, hardness;
+    GLint discAxes, pixelUnits, pixelSlope;
     GLint nodeIndex, window; // of programs that write identities
     GLint centreColours, centreDepths, centrePlaces, columns;
     GLint centrePoints, centreWindow; // of both

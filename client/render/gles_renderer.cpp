@@ -185,7 +185,7 @@ class Gles3Renderer final : public GlesRenderer {
             clear(plan);
             return drawNodes(plan, frame, drawOrder(plan), {});
         }
-        STIPPLE_CHECK(centres_.resize(plan.width, plan.height));
+        STIPPLE_CHECK(centres_.resize(plan.width, plan.height, frame.disc));
         glBindFramebuffer(GL_FRAMEBUFFER, centres_.framebuffer.id());
         clear(plan);
         STIPPLE_CHECK(drawNodes(plan, frame, drawOrder(plan), {.collects = true}));
@@ -217,7 +217,8 @@ class Gles3Renderer final : public GlesRenderer {
 
     // One vertex for each pixel, most often a point: what drawPoints() collected.
     Status drawExpanded(const RasterFrame& frame, PointVariant variant) {
-        variant.circle = frame.circle;
+        variant.disc = frame.disc; // points without normals have a word that says so
+        variant.circle = frame.circle && !frame.disc;
         variant.paraboloid = frame.paraboloid;
         variant.expand = true;
         STIPPLE_TRY(program, pointPrograms_.get(variant));
@@ -238,7 +239,9 @@ class Gles3Renderer final : public GlesRenderer {
 
     // The same where identities are written; one vertex for each pixel of the centres' window.
     Status drawExpandedIdentities(const PickTarget& target) {
-        PointVariant variant{.circle = target.frame.circle, .paraboloid = target.frame.paraboloid};
+        PointVariant variant{.circle = target.frame.circle && !target.frame.disc,
+                             .paraboloid = target.frame.paraboloid,
+                             .disc = target.frame.disc};
         variant.expand = variant.identity = true;
         STIPPLE_TRY(program, pointPrograms_.get(variant));
         program->useFor(target.frame);
@@ -293,12 +296,13 @@ class Gles3Renderer final : public GlesRenderer {
         for (std::size_t place = 0; place < order.size(); ++place) {
             const std::size_t index = order[place];
             const DrawNode& node = plan.nodes[index];
-            PointVariant variant = PointVariant::of(frame, *node.node);
+            PointVariant variant = PointVariant::of(frame, node);
             variant.blend = how.blends;
             variant.identity = how.identities != nullptr;
             variant.collect = how.collects;
             variant.circle = variant.circle && !how.collects;
             variant.paraboloid = variant.paraboloid && !how.collects;
+            variant.disc = variant.disc && !how.collects;
             STIPPLE_TRY(program, pointPrograms_.get(variant));
             if (program != inUse)
                 program->useFor(frame);

@@ -35,11 +35,11 @@ Status PointTarget::resize(int newWidth, int newHeight) {
     return {};
 }
 
-Status CentreTarget::resize(int newWidth, int newHeight) {
-    if (framebuffer && newWidth == width && newHeight == height)
+Status CentreTarget::resize(int newWidth, int newHeight, bool withNormals) {
+    if (framebuffer && newWidth == width && newHeight == height && withNormals == normals)
         return {};
     makeTexture(colour, GL_RGBA8, newWidth, newHeight);
-    makeTexture(place, GL_R32UI, newWidth, newHeight);
+    makeTexture(place, withNormals ? GL_RG32UI : GL_R32UI, newWidth, newHeight);
     makeTexture(depth, GL_DEPTH_COMPONENT32F, newWidth, newHeight);
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.make());
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour.id(), 0);
@@ -49,12 +49,13 @@ Status CentreTarget::resize(int newWidth, int newHeight) {
     glDrawBuffers(static_cast<GLsizei>(attachments.size()), attachments.data());
     width = newWidth;
     height = newHeight;
+    normals = withNormals;
     STIPPLE_CHECK(checkGl("making the buffers of delayed expansion"));
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         *this = CentreTarget();
         return Error{ErrorCode::unsupported,
-                     "the driver refuses a framebuffer of RGBA8, R32UI and 32-bit depth", "OpenGL ES 3.0",
-                     ""};
+                     "the driver refuses a framebuffer of RGBA8, 32-bit integers and 32-bit depth",
+                     "OpenGL ES 3.0", ""};
     }
     return {};
 }

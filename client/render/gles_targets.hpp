@@ -26,18 +26,19 @@ struct PointTarget {
     Status resize(int newWidth, int newHeight);
 };
 
-// The nearest points as single pixels, for delayed expansion: colour, place and size (expand.vert.glsl),
-// depth.
+// The nearest points as single pixels, for delayed expansion: colour, place and size (expand.vert.glsl), the
+// normals of discs, depth.
 struct CentreTarget {
     Framebuffer framebuffer;
     Texture colour, place, depth;
     int width = 0, height = 0;
+    bool normals = false;
 
     std::uint64_t bytes() const {
-        return 12ull * static_cast<unsigned>(width) * static_cast<unsigned>(height);
+        return (normals ? 16ull : 12ull) * static_cast<unsigned>(width) * static_cast<unsigned>(height);
     }
     // Error: unsupported, where the driver refuses such buffers.
-    Status resize(int newWidth, int newHeight);
+    Status resize(int newWidth, int newHeight, bool withNormals);
 };
 
 FloatBlending floatBlending(); // of the current context

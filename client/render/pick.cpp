@@ -69,6 +69,8 @@ Ball ballOf(const DrawNode& node) {
 // Diameter, pixels.
 double largestPoint(const RasterFrame& frame, const Style& style) {
     bool same = style.sizeMode == PointSizeMode::fixed;
+    if (frame.disc && frame.perspective) // what leans towards the eye is seen larger
+        return maxPointPixels;
     return static_cast<double>(same ? frame.size64 : frame.maxSize64) / sizeSteps;
 }
 

@@ -49,6 +49,18 @@ void setDetail(const FramePlan& plan, RasterFrame& frame) {
     frame.sizeByDensity = plan.style.sizeMode == PointSizeMode::spacing && detail.peripheralFalloff > 0;
 }
 
+// Pixels are square: the focal lengths differ by rounding at most.
+void setDiscs(const FramePlan& plan, RasterFrame& frame) {
+    for (int axis = 0; axis < 3; ++axis) {
+        auto i = static_cast<std::size_t>(axis);
+        frame.discRight[i] = static_cast<float>(plan.view.right[axis] / 32767);
+        frame.discUp[i] = static_cast<float>(plan.view.up[axis] / 32767);
+        frame.discForward[i] = static_cast<float>(plan.view.forward[axis] / 32767);
+    }
+    frame.pixelUnits = static_cast<float>(1 / focalOf(plan).y);
+    frame.pixelSlope = frame.perspective ? frame.pixelUnits : 0;
+}
+
 int depthShiftOf(std::uint32_t nearBits, std::uint32_t farBits) {
     return std::max(0, static_cast<int>(std::bit_width(farBits - nearBits)) - depthBits);
 }
@@ -135,6 +147,9 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     bool singlePixels = (sizesDiffer ? frame.maxSize64 : frame.size64) == sizeSteps;
     frame.circle = style.shape != PointShape::square && !singlePixels;
     frame.paraboloid = style.shape == PointShape::paraboloid && frame.circle && !frame.splats;
+    frame.disc = style.shape == PointShape::disc && frame.circle;
+    if (frame.disc)
+        setDiscs(plan, frame);
     return frame;
 }
 
@@ -154,7 +169,7 @@ RasterFrame singlePixelFrame(const RasterFrame& frame) {
     RasterFrame single = frame;
     single.size64 = sizeSteps;
     single.sizeByDistance = single.sizeByDensity = single.adaptive = single.circle = single.splats = false;
-    single.paraboloid = false;
+    single.paraboloid = single.disc = false;
     return single;
 }
 

@@ -38,6 +38,11 @@
 // Paraboloid circles whose pixels are farther than their point: by radius · r² / R² (see "Splats"), r and R
 // in 1/256
 //            pixel, at most far; in the step's d again. Points of a single pixel are flat.
+// Discs      points with a normal cover, instead, the pixels whose view ray meets the plane through the
+//            point, perpendicular to the normal, within the radius, as far as they lie within 127.5 pixels
+//            of the point; each has the plane's view distance, brought into near..far. The pixel that holds
+//            the point is covered all the same: where it misses the disc, at the point's own distance. In
+//            disc.hpp. Points without a normal are circles, those of a single pixel flat.
 // Splats     the nearest points are drawn first. Then each pixel's colour is the mean of the points that
 // cover it and
 //            whose blended step is not beyond the nearest one's, weighted by w = (1 - r² / R²)^hardness from
@@ -45,6 +50,7 @@
 //            With d of the point's step, the blended step is that of
 //              d - (radius + factor · d), at least near      radius = size64 · radiusScale · d; orthographic:
 //                                                            without "d"
+//            Discs: r and R are of the disc, d is of the pixel, but in (radius + factor · d).
 // Expansion  delayed: each point is a single pixel first, that of its place, and the nearest of each pixel
 // stays. These
 //            are then drawn with their sizes and exact places; among equal steps the one comes first whose
@@ -98,7 +104,12 @@ struct RasterFrame {
     bool circle = false;     // false where every point is a single pixel
     float radiusScale = 0;   // half the size in world units, per 1/64 pixel; at distance 1 in perspective
     bool paraboloid = false; // circle, too; never with splats
-    bool splats = false;     // see "Splats"
+    bool disc = false;       // circle, too, which nodes without normals are drawn as
+    // See disc.hpp. The camera's axes, over 32767; what a pixel spans at distance 1, and the same but in
+    // orthographic views 0.
+    std::array<float, 3> discRight{}, discUp{}, discForward{};
+    float pixelUnits = 0, pixelSlope = 0;
+    bool splats = false; // see "Splats"
     int hardness = 1;
     float blendFactor = 0;
     bool continuous = false; // continuous detail, see "Detail"
@@ -142,12 +153,15 @@ inline std::uint32_t bentStep(const RasterFrame& frame, const Bend& bend, int aw
     return (floatBits(distance < frame.far ? distance : frame.far) - frame.nearBits) >> frame.depthShift;
 }
 
-// See "Splats". size64: the point's.
-inline std::uint32_t blendedStep(const RasterFrame& frame, std::uint32_t step, int size64) {
-    float distance = distanceOfStep(frame, step);
+// See "Splats". Of a point of that size and view distance.
+inline float blendDepth(const RasterFrame& frame, float distance, int size64) {
     float radius = static_cast<float>(size64) * frame.radiusScale;
     radius = frame.perspective ? radius * distance : radius;
-    float back = distance - (radius + frame.blendFactor * distance);
+    return radius + frame.blendFactor * distance;
+}
+// At a distance, with the blend depth of its point.
+inline std::uint32_t blendedStep(const RasterFrame& frame, float distance, float depth) {
+    float back = distance - depth;
     return (floatBits(back > frame.near ? back : frame.near) - frame.nearBits) >> frame.depthShift;
 }
 

@@ -55,17 +55,19 @@ Covered coveredPixels(const RasterFrame& frame, const Centres& centres, RowRange
 // The words of some points of a node, side by side.
 struct Gathered {
     std::array<std::uint32_t, 2 * blockPoints> positions;
-    std::array<std::uint32_t, blockPoints> lows, ranks;
+    std::array<std::uint32_t, blockPoints> lows, ranks, normals; // the last of use to discs alone
 
     void take(const PlacedNode& placed, const std::uint64_t* cells, const std::uint32_t* pixels,
               std::size_t count) {
         const ResidentNode& node = *placed.draw->node;
+        const NodeNormals* oriented = placed.draw->normals.get();
         for (std::size_t i = 0; i < count; ++i) {
             std::size_t point = (cells[pixels[i]] & indexMask) - placed.firstIndex;
             ranks[i] = static_cast<std::uint32_t>(point);
             positions[2 * i] = node.positionWords[2 * point];
             positions[2 * i + 1] = node.positionWords[2 * point + 1];
             lows[i] = node.positionShift > 0 ? node.positionLowWords[point] : 0;
+            normals[i] = oriented ? oriented->words[point] : noNormalWord;
         }
     }
     Words words(const PlacedNode& placed) const {
@@ -73,7 +75,7 @@ struct Gathered {
     }
 };
 
-// visit(node, block, count, pixels, ranks) for all points whose centres are in the rows.
+// visit(node, block, count, pixels, the points' words) for all points whose centres are in the rows.
 template <class Visit>
 void visitCentres(const RasterFrame& frame, const Centres& centres, RowRange rows, Sizing sizing,
                   const Visit& visit) {
@@ -90,7 +92,7 @@ void visitCentres(const RasterFrame& frame, const Centres& centres, RowRange row
             if (sizing == Sizing::adaptive)
                 fillFineness(centres.octree, placed.octreePlace, *placed.draw->node, words, count, block);
             transformFor(frame, placed.raster, sizing)(frame, placed.raster, words, count, block);
-            visit(placed, block, count, pixels, gathered.ranks.data());
+            visit(placed, block, count, pixels, gathered);
         }
     }
 }
@@ -103,10 +105,11 @@ void expandRows(const RasterFrame& frame, const Centres& centres, RowRange rows,
     Sizing sizing = sizingOf(frame);
     visitCentres(frame, centres, rows, sizing,
                  [&](const PlacedNode&, const Block& block, std::size_t count, const std::uint32_t* pixels,
-                     const std::uint32_t*) {
+                     const Gathered& gathered) {
                      for (std::size_t i = 0; i < count; ++i)
                          indices[i] = static_cast<std::uint32_t>(pixelFromBottom(frame, pixels[i]));
-                     placeListed(frame, block, count, sizing, indices.data(), cells, shared);
+                     placeListed(frame, block, count, sizing, indices.data(), gathered.normals.data(), cells,
+                                 shared);
                  });
 }
 
@@ -116,10 +119,10 @@ void blendExpandedRows(const RasterFrame& frame, const Centres& centres, RowRang
     Sizing sizing = sizingOf(frame) == Sizing::single ? Sizing::fixed : sizingOf(frame);
     visitCentres(frame, centres, rows, sizing,
                  [&](const PlacedNode& placed, const Block& block, std::size_t count, const std::uint32_t*,
-                     const std::uint32_t* ranks) {
+                     const Gathered& gathered) {
                      for (std::size_t i = 0; i < count; ++i)
-                         colours[i] = colourOf(*placed.draw, ranks[i]);
-                     blendBlock(frame, block, count, colours.data(), nearest, sums);
+                         colours[i] = colourOf(*placed.draw, gathered.ranks[i]);
+                     blendBlock(frame, block, count, colours.data(), gathered.normals.data(), nearest, sums);
                  });
 }
 

@@ -1,6 +1,7 @@
 #include "client/render/software_points.hpp"
 
 #include "client/render/software_coverage.hpp"
+#include "client/render/software_discs.hpp"
 #include "client/render/software_hiding.hpp"
 #include "client/render/software_transform.hpp"
 
@@ -114,6 +115,22 @@ void placeParaboloids(const RasterFrame& frame, const Block& block, std::size_t 
 }
 
 template <bool Shared, class Indices>
+void placeDiscs(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
+                const std::uint32_t* normals, std::uint64_t* cells) {
+    const bool sized = sizesDiffer(frame);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (block.x[i] == nowhere)
+            continue;
+        const int x = 2 * block.x[i] + 1, y = 2 * block.y[i] + 1;
+        const int size64 = sized ? block.size64[i] : frame.size64;
+        const Disc disc = discOf(frame, x, y, size64, block.step[i], normals[i]);
+        visitDisc(frame, disc, x, y, [&](std::size_t cell, const DiscSpot& spot) {
+            offer<Shared>(cells[cell], (std::uint64_t{stepOf(frame, spot.distance)} << indexBits) | index(i));
+        });
+    }
+}
+
+template <bool Shared, class Indices>
 void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                 std::uint64_t* cells) {
     switch (frame.size64) {
@@ -133,9 +150,11 @@ void placeFixed(const RasterFrame& frame, const Block& block, std::size_t count,
 
 template <bool Shared, class Indices>
 void placeBlock(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
-                const Indices& index, std::uint64_t* cells) {
+                const Indices& index, const std::uint32_t* normals, std::uint64_t* cells) {
     if (sizing == Sizing::single)
         placeSingle<Shared>(block, count, index, cells);
+    else if (frame.disc && normals)
+        placeDiscs<Shared>(frame, block, count, index, normals, cells);
     else if (frame.paraboloid)
         placeParaboloids<Shared>(frame, block, count, index, cells);
     else if (sizesDiffer(frame))
@@ -153,7 +172,8 @@ void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* c
         fillBlock(frame, run, done, count, sizing, block);
         const std::uint64_t first = run.index + done;
         placeBlock<Shared>(
-            frame, block, count, sizing, [first](std::size_t i) { return first + i; }, cells);
+            frame, block, count, sizing, [first](std::size_t i) { return first + i; },
+            run.normals ? run.normals + run.first + done : nullptr, cells);
     }
 }
 
@@ -179,12 +199,13 @@ void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells
 }
 
 void placeListed(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
-                 const std::uint32_t* indices, std::uint64_t* cells, bool shared) {
+                 const std::uint32_t* indices, const std::uint32_t* normals, std::uint64_t* cells,
+                 bool shared) {
     auto index = [indices](std::size_t i) { return std::uint64_t{indices[i]}; };
     if (shared)
-        placeBlock<true>(frame, block, count, sizing, index, cells);
+        placeBlock<true>(frame, block, count, sizing, index, normals, cells);
     else
-        placeBlock<false>(frame, block, count, sizing, index, cells);
+        placeBlock<false>(frame, block, count, sizing, index, normals, cells);
 }
 
 } // namespace stipple

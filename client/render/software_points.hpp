@@ -28,7 +28,8 @@ struct PointRun {
     const std::uint32_t* octree =
         nullptr; // drawn_octree.hpp, and the node's place in it: adaptive sizes only
     std::uint32_t place = 0;
-    const std::uint32_t* hiding = nullptr; // colour words of the node's points, if some are hidden
+    const std::uint32_t* hiding = nullptr;  // colour words of the node's points, if some are hidden
+    const std::uint32_t* normals = nullptr; // words of the node's points (node_normals.hpp), for discs
 };
 
 // Where points `done` to `done` + `count` of a run lie; count <= blockPoints.
@@ -38,8 +39,9 @@ void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, 
 // Draws a run into `cells`: width × height, rows from top to bottom, and one more that must be 0 (points
 // outside the picture go there and never win). With `shared`, other threads may be drawing too.
 void drawRun(const RasterFrame& frame, const PointRun& run, std::uint64_t* cells, bool shared);
-// The same of a block whose points have indices of their own.
+// The same of a block whose points have indices of their own; `normals`: theirs, or null.
 void placeListed(const RasterFrame& frame, const Block& block, std::size_t count, Sizing sizing,
-                 const std::uint32_t* indices, std::uint64_t* cells, bool shared);
+                 const std::uint32_t* indices, const std::uint32_t* normals, std::uint64_t* cells,
+                 bool shared);
 
 } // namespace stipple

@@ -172,6 +172,10 @@ class CellRenderer final : public SoftwareRenderer {
         return node.paint && node.paint->hidden > 0 ? node.paint->words->data() : nullptr;
     }
 
+    const std::uint32_t* normalWords(const DrawNode& node) const {
+        return frame_.disc && node.normals ? node.normals->words.data() : nullptr;
+    }
+
     void clearRows(CellParts& cells, int first, int end) {
         byRows([&](int y) {
             if (y >= first && y < end)
@@ -188,7 +192,7 @@ class CellRenderer final : public SoftwareRenderer {
                 runs_.push_back({placed.draw->node.get(), &placed.raster, first,
                                  std::min(runPoints, placed.draw->pointCount - first),
                                  placed.firstIndex + first, octree_.words.data(), placed.octreePlace,
-                                 hidingWords(*placed.draw)});
+                                 hidingWords(*placed.draw), normalWords(*placed.draw)});
             }
     }
 

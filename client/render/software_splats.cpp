@@ -1,6 +1,7 @@
 #include "client/render/software_splats.hpp"
 
 #include "client/render/software_coverage.hpp"
+#include "client/render/software_discs.hpp"
 #include "client/render/software_transform.hpp"
 
 #include <cstring>
@@ -8,9 +9,9 @@
 namespace stipple {
 namespace {
 
-// 1..2^16 for a pixel whose centre is at the square `away` of a distance.
-STIPPLE_INLINE std::uint32_t weightAt(int away, float inverseSquare, int hardness) {
-    float base = std::max(1.0f - static_cast<float>(away) * inverseSquare, 0.0f), weight = base;
+// 1..2^16 for a pixel whose centre is `away` from the point: square of the distance over that of the radius.
+STIPPLE_INLINE std::uint32_t weightAt(float away, int hardness) {
+    float base = std::max(1.0f - away, 0.0f), weight = base;
     for (int i = 1; i < hardness; ++i)
         weight *= base;
     return static_cast<std::uint32_t>(weight * 65535.0f) + 1;
@@ -25,18 +26,45 @@ STIPPLE_INLINE void add(PixelSums& sums, std::uint32_t colour, std::uint64_t wei
 
 } // namespace
 
+namespace {
+
+void blendDiscs(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
+                const std::uint32_t* normals, const std::uint64_t* cells, PixelSums* sums) {
+    const bool sized = sizesDiffer(frame);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (block.x[i] == nowhere)
+            continue;
+        const int x = 2 * block.x[i] + 1, y = 2 * block.y[i] + 1;
+        const int size64 = sized ? block.size64[i] : frame.size64;
+        const Disc disc = discOf(frame, x, y, size64, block.step[i], normals[i]);
+        const float depth = blendDepth(frame, disc.distance, size64);
+        visitDisc(frame, disc, x, y, [&](std::size_t cell, const DiscSpot& spot) {
+            std::uint64_t back = std::uint64_t{blendedStep(frame, spot.distance, depth)} << indexBits;
+            if (back <= (cells[cell] | indexMask))
+                add(sums[cell], colours[i], weightAt(spot.inside ? spot.away : 1.0f, frame.hardness));
+        });
+    }
+}
+
+} // namespace
+
 void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
-                const std::uint64_t* cells, PixelSums* sums) {
+                const std::uint32_t* normals, const std::uint64_t* cells, PixelSums* sums) {
+    if (frame.disc && normals)
+        return blendDiscs(frame, block, count, colours, normals, cells, sums);
     const bool sized = sizesDiffer(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
         int size64 = sized ? block.size64[i] : frame.size64, half = 2 * size64;
-        std::uint64_t back = std::uint64_t{blendedStep(frame, block.step[i], size64)} << indexBits;
+        const float distance = distanceOfStep(frame, block.step[i]);
+        std::uint64_t back = std::uint64_t{blendedStep(frame, distance, blendDepth(frame, distance, size64))}
+                             << indexBits;
         float inverseSquare = 1.0f / (static_cast<float>(half) * static_cast<float>(half));
         visitCovered(frame, 2 * block.x[i] + 1, 2 * block.y[i] + 1, half, [&](std::size_t cell, int away) {
             if (back <= (cells[cell] | indexMask))
-                add(sums[cell], colours[i], weightAt(away, inverseSquare, frame.hardness));
+                add(sums[cell], colours[i],
+                    weightAt(static_cast<float>(away) * inverseSquare, frame.hardness));
         });
     }
 }
@@ -51,7 +79,8 @@ void blendRun(const RasterFrame& frame, const PlacedNode& placed, const PointRun
         fillBlock(frame, run, done, count, sizing, block);
         for (std::size_t i = 0; i < count; ++i)
             colours[i] = colourOf(*placed.draw, run.first + done + i);
-        blendBlock(frame, block, count, colours.data(), cells, sums);
+        blendBlock(frame, block, count, colours.data(),
+                   run.normals ? run.normals + run.first + done : nullptr, cells, sums);
     }
 }
 

@@ -20,9 +20,9 @@ struct alignas(32) PixelSums {
 void blendRun(const RasterFrame& frame, const PlacedNode& placed, const PointRun& run,
               const std::uint64_t* cells, PixelSums* sums);
 
-// The same of a block of points in these colours. No size may be `single`.
+// The same of a block of points in these colours; `normals`: theirs, or null. No size may be `single`.
 void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
-                const std::uint64_t* cells, PixelSums* sums);
+                const std::uint32_t* normals, const std::uint64_t* cells, PixelSums* sums);
 
 // Row `y` (from the top) of the picture from several arrays of sums; `distances` (from `cells`) is filled too
 // unless it is nullptr.

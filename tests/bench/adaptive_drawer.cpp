@@ -43,7 +43,7 @@ Status AdaptiveDrawer::drawByOctree(const FramePlan& plan, unsigned target) {
     const gles::PointProgram* inUse = nullptr;
     for (std::size_t index : drawOrder(plan)) {
         const DrawNode& node = plan.nodes[index];
-        STIPPLE_TRY(program, programs_.get(gles::PointVariant::of(frame, *node.node)));
+        STIPPLE_TRY(program, programs_.get(gles::PointVariant::of(frame, node)));
         if (program != inUse)
             program->useFor(frame);
         inUse = program;
@@ -66,7 +66,7 @@ Status AdaptiveDrawer::drawBatches(const PointBatches& batches, unsigned target)
     const gles::PointProgram* inUse = nullptr;
     for (std::size_t index : drawOrder(plan)) {
         const DrawNode& node = plan.nodes[index];
-        STIPPLE_TRY(program, programs_.get(gles::PointVariant::of(frame, *node.node)));
+        STIPPLE_TRY(program, programs_.get(gles::PointVariant::of(frame, node)));
         if (program != inUse)
             program->useFor(frame);
         inUse = program;

@@ -89,6 +89,7 @@ Status writeScan(const nlohmann::json& cloud, const std::string& path) {
         synth::SynthOptions options;
         options.points = points;
         options.seed = cloud.value("seed", std::uint64_t{1});
+        options.normals = cloud.value("normals", false);
         auto report = synth::synthesize(path, options, [](std::uint64_t, std::uint64_t) {});
         return report.ok() ? Status() : Status(report.error());
     }

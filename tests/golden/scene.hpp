@@ -7,7 +7,7 @@
 //
 // Clouds: "waves" is a rolling ground with a wall of pillars, in plain arithmetic (no library functions that
 // differ between machines); "synth" is a scan by converter/synth: {"kind": "synth", "scene": "town",
-// "points": 50000, "seed": 1}. "colours": "exact" or "mean" is `convert --colours`.
+// "points": 50000, "seed": 1, "normals": true}. "colours": "exact" or "mean" is `convert --colours`.
 #pragma once
 
 #include "client/headless/picture.hpp"

@@ -49,7 +49,7 @@ Result<std::vector<std::vector<int>>> glesLevels(const FramePlan& plan, unsigned
     std::vector<std::vector<int>> levels;
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
         const DrawNode& node = plan.nodes[i];
-        gles::PointVariant variant = gles::PointVariant::of(frame, *node.node);
+        gles::PointVariant variant = gles::PointVariant::of(frame, node);
         variant.captureLevels = true;
         STIPPLE_TRY(program, programs.get(variant));
         program->useFor(frame);

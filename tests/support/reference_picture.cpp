@@ -33,6 +33,8 @@ struct NodeCloud {
                 batch.setValue<std::uint8_t>(column++, i, p.classification);
                 batch.setValue<double>(column++, i, p.gpsTime);
             }
+            for (int axis = 0; node.hasNormals && axis < 3; ++axis)
+                batch.setValue<float>(column++, i, p.normal[axis]);
         }
         points.grid = &grid;
         points.batch = &batch;
@@ -82,7 +84,7 @@ ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const Test
     if (style.splats.enabled)
         canvas.blend(marks, style);
     canvas.doubt(marks, style, slack);
-    return {canvas.finish(style), canvas.doubtful(style)};
+    return {canvas.finish(style), canvas.doubtful(style), canvas.distanceSlack()};
 }
 
 ReferencePoints referencePoints(const reference::View& view, const Style& style,
@@ -100,7 +102,7 @@ ReferencePoints referencePoints(const reference::View& view, const Style& style,
     plain.splats.enabled = false;
     plain.background = {0, 0, 0};
     reference::Canvas canvas(view.width, view.height);
-    canvas.draw(marks, style.shape);
+    canvas.draw(marks, reference::drawnShape(plain));
     canvas.doubt(marks, plain, {});
     DepthImage picture = canvas.finish(plain);
     ReferencePoints points{view.width, view.height, {}, picture.distances, canvas.doubtful(plain)};
@@ -186,7 +188,8 @@ std::size_t wrongDistances(const std::vector<float>& distances, const ReferenceP
     std::size_t wrong = distances.size() == reference.unsure.size() ? 0 : SIZE_MAX;
     for (std::size_t at = 0; at < reference.unsure.size() && wrong < SIZE_MAX; ++at) {
         float expected = reference.picture.distances[at];
-        bool differs = std::abs(distances[at] - expected) > tolerance * expected;
+        double allowed = double{tolerance} * double{expected} + reference.distanceSlack[at];
+        bool differs = std::abs(double{distances[at]} - double{expected}) > allowed;
         wrong += differs && !reference.unsure[at] ? 1 : 0;
     }
     return wrong;

@@ -15,7 +15,8 @@ namespace stipple::test {
 
 struct ReferencePicture {
     DepthImage picture;
-    std::vector<bool> unsure; // per pixel, rows from the top
+    std::vector<bool> unsure;          // per pixel, rows from the top
+    std::vector<double> distanceSlack; // Canvas::distanceSlack
 };
 
 ReferencePicture referencePicture(const std::vector<TestNode>& nodes, const TestView& view,

@@ -25,10 +25,10 @@ CloudMetadata metadataOf(const SmallCloudOptions& options) {
     metadata.spacing = 1;
     metadata.pictureColour = options.colour;
     metadata.innerColour = options.innerColour;
-    auto add = [&](std::string_view name) {
+    auto add = [&](std::string_view name, AttributeType type = AttributeType::u16) {
         Attribute attribute;
         attribute.name = std::string(name);
-        attribute.type = AttributeType::u16;
+        attribute.type = type;
         metadata.schema.attributes.push_back(attribute);
         metadata.statistics.push_back({0, 65535, 32768, 10000, {}});
     };
@@ -38,6 +38,9 @@ CloudMetadata metadataOf(const SmallCloudOptions& options) {
     if (options.colour == PictureColour::rgb)
         for (std::string_view name : {attribute_names::red, attribute_names::green, attribute_names::blue})
             add(name);
+    if (options.withNormals)
+        for (std::string_view name : {"nx", "ny", "nz"})
+            add(name, AttributeType::i16);
     return metadata;
 }
 

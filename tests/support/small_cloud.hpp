@@ -19,6 +19,7 @@ struct SmallCloudOptions {
     // mean: nodes with children show colours that are not their points'.
     InnerColour innerColour = InnerColour::exact;
     bool withIntensity = true;
+    bool withNormals = false; // nx, ny, nz, int16
     std::uint32_t seed = 1;
 };
 

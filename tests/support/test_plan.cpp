@@ -7,24 +7,41 @@
 namespace stipple::test {
 
 std::vector<Attribute> attributesOf(const TestNode& node) {
-    if (!node.hasIntensity)
-        return {};
-    return {{std::string(attribute_names::intensity), AttributeType::f32},
-            {std::string(attribute_names::classification), AttributeType::u8},
-            {std::string(attribute_names::gpsTime), AttributeType::f64}};
+    std::vector<Attribute> attributes;
+    auto add = [&](std::string_view name, AttributeType type) {
+        attributes.push_back({std::string(name), type});
+    };
+    if (node.hasIntensity) {
+        add(attribute_names::intensity, AttributeType::f32);
+        add(attribute_names::classification, AttributeType::u8);
+        add(attribute_names::gpsTime, AttributeType::f64);
+    }
+    if (node.hasNormals)
+        for (std::string_view name : {"NormalX", "NormalY", "NormalZ"})
+            add(name, AttributeType::f32);
+    return attributes;
 }
 
 namespace {
 
 NodeColumns columnsOf(const TestNode& node) {
     ByteWriter values;
-    for (const TestPoint& p : node.points)
-        values.write(p.intensity);
-    for (const TestPoint& p : node.points)
-        values.write(p.classification);
-    for (const TestPoint& p : node.points)
-        values.write(p.gpsTime);
-    return {static_cast<std::uint32_t>(node.points.size()), {{0, 4}, {1, 1}, {2, 8}}, values.take()};
+    auto write = [&](auto member) {
+        for (const TestPoint& p : node.points)
+            values.write(member(p));
+    };
+    if (node.hasIntensity) {
+        write([](const TestPoint& p) { return p.intensity; });
+        write([](const TestPoint& p) { return p.classification; });
+        write([](const TestPoint& p) { return p.gpsTime; });
+    }
+    for (int axis = 0; node.hasNormals && axis < 3; ++axis)
+        write([&](const TestPoint& p) { return p.normal[axis]; });
+    NodeColumns columns{static_cast<std::uint32_t>(node.points.size()), {}, values.take()};
+    for (const Attribute& attribute : attributesOf(node))
+        columns.columns.push_back({static_cast<std::int32_t>(columns.columns.size()),
+                                   static_cast<std::uint32_t>(attribute.size())});
+    return columns;
 }
 
 } // namespace
@@ -49,7 +66,7 @@ std::shared_ptr<const ResidentNode> residentNode(const TestNode& node) {
             resident->colourWords.push_back(p.r | std::uint32_t{p.g} << 8 | std::uint32_t{p.b} << 16 |
                                             0xFF000000u);
     }
-    if (node.hasIntensity)
+    if (node.hasIntensity || node.hasNormals)
         resident->columns = columnsOf(node);
     return resident;
 }
@@ -117,6 +134,8 @@ void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes) {
         RankDensity density = rankDensity(resident.key.level, std::ldexp(1.0, -resident.key.level),
                                           std::max(1u, resident.totalPoints));
         plan.nodes[n].paint = painter.paint({plan.nodes[n].node, {}, {0, 0, 0}, box, false, density, 1});
+        std::vector columns{std::make_shared<const NodeColumns>(plan.nodes[n].node->columns)};
+        plan.nodes[n].normals = plan.style.shape == PointShape::disc ? packNormals(schema, columns) : nullptr;
     }
 }
 
@@ -162,6 +181,20 @@ int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const
 
 double finestSpacing(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point) {
     return std::ldexp(node.spacing, node.key.level - finestLevel(octree, node, point));
+}
+
+void addNormals(TestNode& node, std::uint64_t seed) {
+    TestRandom random(seed);
+    node.hasNormals = true;
+    for (TestPoint& p : node.points) {
+        Vec3d n;
+        do
+            n = {2 * random.unit() - 1, 2 * random.unit() - 1, 2 * random.unit() - 1};
+        while (dot(n, n) > 1 || dot(n, n) < 0.01);
+        bool none = random.below(20) == 0;
+        for (int axis = 0; axis < 3; ++axis)
+            p.normal[axis] = none ? 0 : static_cast<float>(n[axis] * 3);
+    }
 }
 
 std::uint64_t TestRandom::next() { // splitmix64

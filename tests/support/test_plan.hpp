@@ -15,6 +15,7 @@ struct TestPoint {
     float intensity = 0;
     std::uint8_t classification = 0;
     double gpsTime = 0;
+    Vec3<float> normal{}; // zero: none
 };
 
 // A cube of 2^nodeBits grid steps of `scale` world units whose lowest corner is at `corner` (world).
@@ -23,7 +24,8 @@ struct TestNode {
     int nodeBits = 16;
     Vec3d corner{0, 0, 0};
     Vec3d scale{0.01, 0.01, 0.01};
-    bool hasColour = true, hasIntensity = true; // without: no further attributes either
+    bool hasColour = true, hasIntensity = true; // without: nor classes and times
+    bool hasNormals = false;
     NodeKey key;        // level 0: testPlan gives each node a key of its own, at level 8
     double spacing = 0; // of its points, world units
 
@@ -44,7 +46,8 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
 // Paints a plan of these nodes anew, after its style was changed.
 void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes);
 
-// What a node's points carry: Intensity (float32), Classification, GPS Time; or nothing.
+// What a node's points carry: Intensity (float32), Classification, GPS Time; NormalX, NormalY, NormalZ; or
+// nothing.
 std::vector<Attribute> attributesOf(const TestNode& node);
 
 // The nodes of an octree of `depth` levels below its root, some branches of which end sooner. Each holds
@@ -54,6 +57,9 @@ std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t 
 // The spacing of the finest node that holds the point, found by looking at all nodes of such an octree.
 double finestSpacing(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);
 int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);
+
+// Gives each point a direction of its own, any as likely as another; a few of them none.
+void addNormals(TestNode& node, std::uint64_t seed);
 
 // Numbers in [0, 1) that are the same everywhere.
 class TestRandom {

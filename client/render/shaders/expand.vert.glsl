@@ -14,7 +14,7 @@ flat out uvec3 vPoint;
 uniform sampler2D uCentreColours;
 uniform sampler2D uCentreDepths;
 #endif
-uniform usampler2D uCentrePlaces; // cell in its pixel: x, y << 7; size << 14, 1/64 pixel
+uniform usampler2D uCentrePlaces; // cell in its pixel: x, y << 7; size << 14, 1/64 pixel. Discs: the normal's word
 uniform int uColumns;             // of the picture, or of the window
 
 void main() {
@@ -37,7 +37,7 @@ void main() {
         discardPoint();
         return;
     }
-    uint place = texelFetch(uCentrePlaces, pixel, 0).r;
-    ivec2 cell = corner + ivec2(uvec2(place, place >> 7) & 127u);
-    placePoint(cell, float(place >> 14), step);
+    uvec2 place = texelFetch(uCentrePlaces, pixel, 0).rg;
+    ivec2 cell = corner + ivec2(uvec2(place.r, place.r >> 7) & 127u);
+    placePoint(cell, float(place.r >> 14), step, place.g);
 }

@@ -1,7 +1,7 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
 // Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE (with
-// the text of octree.glsl) for sizes from the octree; COLLECT for the first pass of delayed expansion; CAPTURE_LEVELS to
+// the text of octree.glsl) for sizes from the octree; NORMALS where they are looked at; COLLECT for the first pass of delayed expansion; CAPTURE_LEVELS to
 // tell the level found there; IDENTITY where it is asked which point a pixel shows.
 precision highp float;
 precision highp int;
@@ -11,6 +11,11 @@ layout(location = 0) in uvec2 aPosition;
 layout(location = 1) in uint aPositionLow;
 #endif
 layout(location = 2) in vec4 aColour; // alpha 0: hidden
+#ifdef NORMALS
+layout(location = 3) in uint aNormal; // a word of client/core/node_normals.hpp
+#else
+const uint aNormal = 0x80008000u; // none
+#endif
 
 uniform ivec3 uCell;
 uniform vec3 uFraction;
@@ -41,7 +46,7 @@ uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
 #endif
 
 #ifdef COLLECT
-flat out uint vPlace; // expand.vert.glsl, uCentrePlaces
+flat out uvec2 vPlace; // expand.vert.glsl, uCentrePlaces
 #endif
 #ifdef CAPTURE_LEVELS
 flat out int vLevels;
@@ -133,8 +138,8 @@ void main() {
     vPoint = uvec3(uNode, uint(gl_VertexID), step);
 #endif
 #ifdef COLLECT
-    vPlace = uint(cell.x & 127) | uint(cell.y & 127) << 7 | uint(size64) << 14;
+    vPlace = uvec2(uint(cell.x & 127) | uint(cell.y & 127) << 7 | uint(size64) << 14, aNormal);
     size64 = 64.0;
 #endif
-    placePoint(cell, floor(size64), step);
+    placePoint(cell, floor(size64), step, aNormal);
 }

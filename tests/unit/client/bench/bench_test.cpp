@@ -145,6 +145,30 @@ TEST_CASE("with every point the renderers give the reference but for roundings",
         }
 }
 
+TEST_CASE(
+    "discs are nearer to the reference's discs than circles are, and a cloud without normals is told of",
+    "[bench]") {
+    test::TemporaryFolder folder;
+    auto made = golden::makeCloud(
+        {{"kind", "synth"}, {"scene", "town"}, {"points", 40000}, {"normals", true}}, folder.path());
+    REQUIRE(made.ok());
+    BenchOptions options = smallBench();
+    options.clouds = {*made, cloudFile()};
+    options.modes = modesCalled({"discs"});
+    options.usualBudget = 1'000'000;
+    BenchResult discs = run(options);
+    CHECK(discs.clouds[0].limitations.empty());
+    REQUIRE(discs.clouds[1].limitations.size() == 1);
+    CHECK(discs.clouds[1].limitations[0].find("discs: ") == 0);
+    CHECK(discs.clouds[1].limitations[0].find("has no normals") != std::string::npos);
+    CHECK(toJson(discs)["clouds"][1]["limitations"].size() == 1);
+    for (const Run& one : discs.runs)
+        for (const FrameResult& frame : one.frames) {
+            CHECK(frame.pixels.mean < 1); // exact but for places that are snapped, at edges of discs
+            CHECK(frame.depth.wrongShare < 0.01);
+        }
+}
+
 TEST_CASE("more points are nearer to the reference", "[bench]") {
     BenchOptions options = smallBench();
     options.modes = modesCalled({"all-nodes"});

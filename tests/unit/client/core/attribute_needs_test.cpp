@@ -94,3 +94,23 @@ TEST_CASE("a cloud is hidden whole when its statistics say that no point can pas
     cloud.statistics[3].histogram.clear(); // too many values to be counted
     CHECK_FALSE(hidesAll(classes, cloud));
 }
+
+TEST_CASE("normals are of use to discs alone, and a cloud without is said to have none") {
+    CloudMetadata cloud = cloudWith(InnerColour::exact);
+    Style style;
+    style.shape = PointShape::disc;
+    CHECK(needsOf(style, cloud) == AttributeNeeds{});
+    CHECK(lackOf(style, cloud, "town").find("town has no normals") == 0);
+    for (const char* name : {"NormalX", "NormalY", "NormalZ"})
+        cloud.schema.attributes.push_back({name, AttributeType::f32});
+    CHECK(needsOf(style, cloud).blocks == std::vector<int>{4, 5, 6});
+    CHECK(columnBytes(needsOf(style, cloud), cloud) == 12);
+    CHECK(lackOf(style, cloud, "town").empty());
+    style.sizePixels = 1;
+    CHECK(lackOf(style, cloud, "town").find("single pixel") != std::string::npos);
+    for (PointShape shape : {PointShape::square, PointShape::circle, PointShape::paraboloid}) {
+        style.shape = shape;
+        CHECK(needsOf(style, cloud) == AttributeNeeds{});
+        CHECK(lackOf(style, cloudWith(InnerColour::exact), "town").empty());
+    }
+}

@@ -175,6 +175,32 @@ TEST_CASE("missing and foreign files and unwritable outputs have exit codes of t
     CHECK(scratch.count() == 1); // the text alone
 }
 
+TEST_CASE("a picture says what its style asks for that the cloud has not", "[render]") {
+    auto limitationsOf = [](const std::string& cloud, const Style& style) {
+        auto source = openFileSource(cloud);
+        REQUIRE(source.ok());
+        headless::PictureRequest request;
+        request.width = request.height = 64;
+        request.style = style;
+        auto picture = headless::drawPicture(std::move(*source), request);
+        REQUIRE(picture.ok());
+        return picture->limitations;
+    };
+    Style style;
+    CHECK(limitationsOf(cloudFile(), style).empty());
+    style.shape = PointShape::disc;
+    auto said = limitationsOf(cloudFile(), style);
+    REQUIRE(said.size() == 1);
+    CHECK(said[0].find(cloudFile() + " has no normals") == 0);
+    Scratch scratch;
+    auto oriented = golden::makeCloud(
+        {{"kind", "synth"}, {"scene", "town"}, {"points", 5000}, {"normals", true}}, scratch.path.string());
+    REQUIRE(oriented.ok());
+    CHECK(limitationsOf(*oriented, style).empty());
+    CHECK(render({cloudFile(), "-o", scratch.file("a.png"), "--style", R"({"shape": "disc"})"}) ==
+          cli::success);
+}
+
 TEST_CASE("a damaged cloud leaves an error and no picture", "[render]") {
     Scratch scratch;
     std::string whole = bytesOf(cloudFile()), damaged = scratch.file("damaged.stipple");

@@ -19,14 +19,18 @@ struct Scene {
 };
 
 std::vector<TestNode> someNodes() {
-    return {randomNode(1, 700, 10, {-5, -5, -5}, 0.01), randomNode(2, 400, 12, {-20, 10, -20}, 0.01),
-            randomNode(3, 100, 9, {1, -8, 0}, 0.01)};
+    std::vector<TestNode> nodes{randomNode(1, 700, 10, {-5, -5, -5}, 0.01),
+                                randomNode(2, 400, 12, {-20, 10, -20}, 0.01),
+                                randomNode(3, 100, 9, {1, -8, 0}, 0.01)};
+    addNormals(nodes[0], 1);
+    addNormals(nodes[1], 2);
+    return nodes;
 }
 
 std::vector<Scene> scenes() {
     std::vector<Scene> all;
     for (Projection projection : {Projection::perspective, Projection::orthographic})
-        for (PointShape shape : {PointShape::square, PointShape::circle})
+        for (PointShape shape : {PointShape::square, PointShape::circle, PointShape::disc})
             for (double size : {1.0, 2.0, 3.0, 6.3, -0.3}) {
                 Scene scene;
                 scene.nodes = someNodes();
@@ -166,7 +170,8 @@ namespace {
 // Scenes of delayed expansion whose points have a colour each, so that a pixel says which point it shows.
 std::vector<Scene> lateScenes() {
     std::vector<Scene> all;
-    for (PointShape shape : {PointShape::square, PointShape::circle, PointShape::paraboloid})
+    for (PointShape shape :
+         {PointShape::square, PointShape::circle, PointShape::paraboloid, PointShape::disc})
         for (PointSizeMode mode : {PointSizeMode::fixed, PointSizeMode::world, PointSizeMode::adaptive})
             for (Projection projection : {Projection::perspective, Projection::orthographic}) {
                 Scene scene;
@@ -183,13 +188,15 @@ std::vector<Scene> lateScenes() {
                 scene.style.sizeSpacings = 0.6;
                 scene.style.delayedExpansion = DelayedExpansion::on;
                 std::uint32_t number = 0;
-                for (TestNode& node : scene.nodes)
+                for (TestNode& node : scene.nodes) {
+                    addNormals(node, number);
                     for (TestPoint& point : node.points) {
                         ++number;
                         point.r = static_cast<std::uint8_t>(number & 255);
                         point.g = static_cast<std::uint8_t>(number >> 8 & 255);
                         point.b = static_cast<std::uint8_t>(number >> 16);
                     }
+                }
                 all.push_back(std::move(scene));
             }
     return all;

@@ -1,6 +1,7 @@
 // Points a second of both rasterizers on made-up nodes: client_render_speed [POINTS_MILLION] [WIDTH HEIGHT]
 // [GLES 1 or 0]. Points lie on a rough ground seen from above at an angle, in nodes of 40,000, as a scan
-// does. Then what delayed expansion gains and how far its picture is from that of drawing at once.
+// does. Then what discs cost against circles, and what delayed expansion gains and how far its picture is
+// from that of drawing at once.
 #include "client/headless/egl_context.hpp"
 #include "client/measure/pixel_error.hpp"
 #include "client/render/gles_renderer.hpp"
@@ -40,8 +41,12 @@ std::vector<TestNode> ground(int nodesAcross) {
                 static_cast<std::uint32_t>(200 + 150 * std::sin(point.x * 0.004) * std::cos(point.y * 0.003));
             point.r = static_cast<std::uint8_t>(point.x >> 4);
             point.g = static_cast<std::uint8_t>(point.y >> 4);
+            point.normal = {static_cast<float>(-0.6 * std::cos(point.x * 0.004) * std::cos(point.y * 0.003)),
+                            static_cast<float>(0.45 * std::sin(point.x * 0.004) * std::sin(point.y * 0.003)),
+                            1};
             node.points.push_back(point);
         }
+        node.hasNormals = true;
         nodes.push_back(std::move(node));
     }
     return nodes;
@@ -100,6 +105,9 @@ std::vector<Case> casesFor(double half) {
         style.sizeMode = PointSizeMode::adaptive;
         style.sizeSpacings = 1;
     });
+    add("3 px disc", 3, PointShape::disc, asIs);
+    add("5 px disc", 5, PointShape::disc, asIs);
+    add("3 px disc splats", 3, PointShape::disc, blended);
     add("2 px splats", 2, PointShape::circle, blended);
     add("3 px splats", 3, PointShape::circle, blended);
     add("3 px splats, EDL 8", 3, PointShape::circle,
@@ -139,6 +147,28 @@ void compareExpansion(const char* name, const Draw& draw, const std::vector<Test
         std::printf("%-9s %-12s %10.1f ms %10.1f ms %+8.0f %% frames, mean error %.2f levels (%.2f %%)\n",
                     name, kind.name, 1e3 * slow, 1e3 * quick, 100 * (slow / quick - 1), error, error / 2.55);
     }
+}
+
+// Discs against circles of the same size, one after the other in turn.
+void compareDiscs(const Draw& draw, const std::vector<TestNode>& nodes, const TestView& view, Clock clock,
+                  int runs) {
+    for (double pixels : {2.0, 3.0, 5.0, 9.0, 20.0})
+        for (bool splats : {false, true}) {
+            Style style;
+            style.sizePixels = pixels;
+            style.edl.enabled = false;
+            style.splats.enabled = splats;
+            FramePlan circles = testPlan(nodes, view, style);
+            style.shape = PointShape::disc;
+            FramePlan discs = testPlan(nodes, view, style);
+            double circle = 1e9, disc = 1e9;
+            for (int i = 0; i < runs; ++i) {
+                circle = std::min(circle, bestSeconds(clock, 1, [&] { draw(circles); }));
+                disc = std::min(disc, bestSeconds(clock, 1, [&] { draw(discs); }));
+            }
+            std::printf("%4.0f px %-8s circles %8.1f ms, discs %8.1f ms: %.2f times\n", pixels,
+                        splats ? "splats" : "", 1e3 * circle, 1e3 * disc, disc / circle);
+        }
 }
 
 } // namespace
@@ -185,6 +215,8 @@ int main(int argc, char** argv) {
         }
         std::printf("\n");
     }
+    std::printf("Discs and circles, software\n");
+    compareDiscs([&](FramePlan& plan) { return single->render(plan); }, nodes, view, Clock::processor, 5);
     std::printf("Drawn at once, and with delayed expansion\n");
     compareExpansion(
         "software", [&](FramePlan& plan) { return single->render(plan); }, nodes, view, Clock::processor, 3);
