@@ -80,6 +80,8 @@ class CloudBench {
             for (std::uint64_t budget : budgetsOf(mode))
                 for (const CameraPath& path : info_.paths)
                     STIPPLE_CHECK(runPath(mode, budget, path, *drawer));
+            if (std::string_view limit = drawer->limitation(); !limit.empty())
+                info_.limitations.push_back(cat(mode.name, ": ", limit));
         }
         result_.clouds.push_back(std::move(info_));
         return {};

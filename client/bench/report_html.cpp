@@ -246,6 +246,8 @@ Result<std::string> cloudSection(const BenchResult& result, const CloudResult& c
     std::string html =
         cat("<h2>", escaped(cloud.name), "</h2>\n<p>", cloud.points, " points; ", cloud.paths.size(),
             " paths. Means over all their frames; times are medians.</p>\n");
+    for (const std::string& sentence : cloud.limitations)
+        html += cat("<p>", escaped(sentence), ".</p>\n");
     html += charts(summaries) + groupCharts(summaries, result.modes) +
             comparisonTable(compare(summaries, result.modes)) + summaryTable(summaries) +
             pathCharts(result, cloud);

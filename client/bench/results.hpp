@@ -57,7 +57,8 @@ struct CloudResult {
     std::string pointHash;
     BoxD bounds;
     std::vector<CameraPath> paths;
-    // What modes ask for that the cloud has not, and what was drawn instead: "MODE: SENTENCE".
+    // What modes ask for that the cloud has not, or the driver can't do, and what was drawn instead: "MODE:
+    // SENTENCE".
     std::vector<std::string> limitations{};
 };
 

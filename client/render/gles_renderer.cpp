@@ -160,6 +160,8 @@ class Gles3Renderer final : public GlesRenderer {
         std::string told(frame.splats && !blends ? withoutFloats : "");
         bool sized = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
         int largest = ((sized ? frame.maxSize64 : frame.size64) + sizeSteps - 1) / sizeSteps;
+        if (frame.disc && frame.perspective) // what leans towards the eye is seen larger
+            largest = maxPointPixels;
         if (largest > pointPixels_)
             told += cat(told.empty() ? "" : "; ", "this graphics driver draws points of at most ",
                         pointPixels_, " pixels: larger ones are cut down to that");

@@ -105,8 +105,11 @@ TEST_CASE("the CSV has as many fields in each line as names, and quotes what nee
 }
 
 TEST_CASE("the page asks for nothing else and shows text as text") {
-    auto html = htmlOf(someResult());
+    BenchResult result = someResult();
+    result.clouds[0].limitations = {"splats: this driver can't do <that>"};
+    auto html = htmlOf(result);
     REQUIRE(html.ok());
+    CHECK(html->find("<p>splats: this driver can't do &lt;that&gt;.</p>") != std::string::npos);
     CHECK(html->find("a &lt;fast&gt; one") != std::string::npos);
     CHECK(html->find("<fast>") == std::string::npos);
     CHECK(html->find("http") == std::string::npos);
