@@ -1,5 +1,6 @@
 #include "client/web/viewer.hpp"
 
+#include "client/core/attribute_needs.hpp"
 #include "client/core/camera.hpp"
 #include "client/core/json.hpp"
 #include "client/core/point_query.hpp"
@@ -347,6 +348,10 @@ std::string Viewer::errorsJson() const {
         list.push_back(drawError_->sentence());
     if (renderer_ && !renderer_->limitation().empty())
         list.push_back(std::string(renderer_->limitation()));
+    for (const CloudState& cloud : session_->clouds())
+        if (cloud.metadata && cloud.visible)
+            if (std::string lack = lackOf(session_->style(), *cloud.metadata, cloud.name); !lack.empty())
+                list.push_back(std::move(lack));
     return jsonText(list);
 }
 

@@ -181,37 +181,78 @@ describe('the picture', () => {
         },
     };
 
+    /** What the page shows of `cloud` in that style is what the native program draws of it. */
+    async function checkAgainstNative(page, cloud, style, tolerance) {
+        await page.evaluate((s) => window.stipple.setStyle(s), style);
+        await settle(page);
+        const drawn = await readPixels(page);
+        const camera = await page.evaluate(() => window.stipple.camera());
+        const { frame } = await counters(page);
+
+        const output = join(folder.path, 'native.png');
+        const said = JSON.parse(
+            await stipple(
+                'render', cloud, '-o', output, '--backend', 'gles', '--json',
+                '--size', `${size.width}x${size.height}`,
+                '--view', JSON.stringify(camera),
+                '--style', JSON.stringify(style),
+            ),
+        );
+        const difference = compare(drawn, await readPng(output));
+        const covered = coverage(drawn);
+        const share = difference.share / covered;
+        const mean = difference.mean / covered;
+        report('differs from native', { ...difference, covered, shareOfCovered: share, meanOfCovered: mean });
+        assert.equal(frame.pointsDrawn, said.frame.pointsDrawn);
+        assert.equal(frame.nodesDrawn, said.frame.nodesDrawn);
+        assert.ok(share <= tolerance.share, `${difference.differing} pixels differ`);
+        assert.ok(mean <= tolerance.mean, `the mean difference is ${mean}`);
+        return drawn;
+    }
+
     for (const [name, { style: wanted, tolerance }] of Object.entries(looks)) {
         test(`equals the native GLES picture: ${name}`, async () => {
             const { page } = await openTown(size);
             const style = typeof wanted === 'function' ? wanted(await townBounds()) : wanted;
-            await page.evaluate((s) => window.stipple.setStyle(s), style);
-            await settle(page);
-            const drawn = await readPixels(page);
-            const camera = await page.evaluate(() => window.stipple.camera());
-            const { frame } = await counters(page);
-
-            const output = join(folder.path, 'native.png');
-            const said = JSON.parse(
-                await stipple(
-                    'render', town, '-o', output, '--backend', 'gles', '--json',
-                    '--size', `${size.width}x${size.height}`,
-                    '--view', JSON.stringify(camera),
-                    '--style', JSON.stringify(style),
-                ),
-            );
-            const difference = compare(drawn, await readPng(output));
-            const covered = coverage(drawn);
-            const share = difference.share / covered;
-            const mean = difference.mean / covered;
-            report('differs from native', { ...difference, covered, shareOfCovered: share, meanOfCovered: mean });
-            assert.equal(frame.pointsDrawn, said.frame.pointsDrawn);
-            assert.equal(frame.nodesDrawn, said.frame.nodesDrawn);
-            assert.ok(share <= tolerance.share, `${difference.differing} pixels differ`);
-            assert.ok(mean <= tolerance.mean, `the mean difference is ${mean}`);
+            await checkAgainstNative(page, town, style, tolerance);
             await page.close();
         });
     }
+
+    test('draws discs along normals, which are fetched for nothing else, as the native program does', async () => {
+        const oriented = await makeTown(folder.path, { points: 60_000, name: 'oriented', normals: true });
+        const host = await serve(oriented);
+        try {
+            const { page, complaints } = await openPage(browser, size);
+            await page.goto(host.address);
+            const before = await settleWithPoints(page);
+            const circles = await readPixels(page);
+            await page.getByLabel('Shape: Disc').check();
+            const { session } = await settle(page);
+            assert.ok(session.attributeBytesFetched > before.session.attributeBytesFetched);
+            const look = { shape: 'disc', sizePixels: 6, edl: { enabled: false } };
+            const tolerance = { share: 0.02, mean: 0.7 };
+            const discs = await checkAgainstNative(page, oriented, look, tolerance);
+            await keepScreenshot(page, 'discs');
+            assert.ok(compare(circles, discs).share > 0.01, 'discs look like the circles before them');
+            const further = [{ splats: { enabled: true } }, { splats: { enabled: false }, delayedExpansion: 'on' }];
+            for (const change of further)
+                await checkAgainstNative(page, oriented, { ...look, ...change }, { share: 0.06, mean: 3 });
+            assert.deepEqual(complaints, []);
+            await page.close();
+        } finally {
+            await host.stop();
+        }
+    });
+
+    test('offers discs where a cloud has normals, and says when one has none', async () => {
+        const { page } = await openTown();
+        assert.equal(await page.getByLabel('Shape: Disc').count(), 0);
+        await page.evaluate(() => window.stipple.setStyle({ shape: 'disc' }));
+        await page.getByText(/has no normals.*circles, not as discs/).first().waitFor();
+        assert.equal(await page.getByLabel('Shape: Disc').count(), 1);
+        await page.close();
+    });
 
     test('follows the budget', async () => {
         const { page } = await openTown();

@@ -22,10 +22,11 @@ export async function scratchFolder() {
 }
 
 /** A small town: enough points for several nodes, few enough for a GL in software. */
-export async function makeTown(folder, { points = 150_000, seed = 1, name = 'town' } = {}) {
+export async function makeTown(folder, { points = 150_000, seed = 1, name = 'town', normals = false } = {}) {
     const scan = join(folder, `${name}.las`);
     const cloud = join(folder, `${name}.stipple`);
-    await stipple('synth', scan, '--points', String(points), '--scene', 'town', '--seed', String(seed));
+    const further = normals ? ['--normals'] : [];
+    await stipple('synth', scan, '--points', String(points), '--scene', 'town', '--seed', String(seed), ...further);
     await stipple('convert', scan, '-o', cloud);
     return cloud;
 }

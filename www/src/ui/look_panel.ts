@@ -8,6 +8,7 @@ import { formatCompact, ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const spacingSize: [Style['sizeMode'], string] = ['spacing', 'Spacings'];
+const discShape: [Style['shape'], string] = ['disc', 'Disc'];
 
 /** How the clouds are looked at: view, points, colour, light. */
 export class LookPanel extends ModelElement {
@@ -154,6 +155,7 @@ export class LookPanel extends ModelElement {
                     ['circle', 'Circle'],
                     ['square', 'Square'],
                     ['paraboloid', 'Parab.'],
+                    ...(this.canDrawDiscs() ? [discShape] : []),
                 ],
                 (shape) => this.model.changeStyle({ shape }),
             )}
@@ -183,6 +185,12 @@ export class LookPanel extends ModelElement {
                 </span>
             </label>
         </fieldset>`;
+    }
+
+    /** Some cloud has normals; or discs are chosen, and the choice must show. */
+    private canDrawDiscs(): boolean {
+        const { clouds, style } = this.model;
+        return style.shape === 'disc' || clouds.some((cloud) => cloud.hasNormals === true);
     }
 
     private renderSize(): TemplateResult {

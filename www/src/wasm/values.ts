@@ -66,7 +66,7 @@ export interface Style {
     sizeSpacings: number;
     minSizePixels: number;
     maxSizePixels: number;
-    shape: 'square' | 'circle' | 'paraboloid';
+    shape: 'square' | 'circle' | 'paraboloid' | 'disc';
     delayedExpansion: 'off' | 'on' | 'auto';
     splats: { enabled: boolean; hardness: number; depthFactor: number };
     detail: {
@@ -120,6 +120,7 @@ export interface CloudState {
     crs?: string;
     attributes?: string[];
     classes?: CloudClass[];
+    hasNormals?: boolean;
 }
 
 /** Where a point of a cloud is, exactly as its file has it, and what measuring from it needs. */
