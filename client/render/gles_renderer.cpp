@@ -189,7 +189,7 @@ class Gles3Renderer final : public GlesRenderer {
         }
         STIPPLE_CHECK(centres_.resize(plan.width, plan.height, frame.disc));
         glBindFramebuffer(GL_FRAMEBUFFER, centres_.framebuffer.id());
-        clear(plan);
+        clearCentres(plan);
         STIPPLE_CHECK(drawNodes(plan, frame, drawOrder(plan), {.collects = true}));
         glBindFramebuffer(GL_FRAMEBUFFER, target);
         clear(plan);
@@ -203,6 +203,17 @@ class Gles3Renderer final : public GlesRenderer {
         glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
         glClearDepthf(1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    }
+
+    // Buffer by buffer: glClear can't clear integers beside colours, and browsers then clear nothing.
+    void clearCentres(const FramePlan& plan) {
+        glViewport(0, 0, plan.width, plan.height);
+        setPointState();
+        const GLfloat black[4] = {0, 0, 0, 1}, farthest = 1;
+        const GLuint nothing[4] = {0, 0, 0, 0};
+        glClearBufferfv(GL_COLOR, 0, black);
+        glClearBufferuiv(GL_COLOR, 1, nothing);
+        glClearBufferfv(GL_DEPTH, 0, &farthest);
     }
 
     static void setPointState() {
