@@ -11,7 +11,9 @@ namespace {
 constexpr double degrees = 180 / std::numbers::pi;
 
 double spatialLength(Vec3d v) {
-    return std::hypot(v.x, v.y, v.z); // squares of 1e-200 or 1e200 neither vanish nor overflow
+    // Squares of 1e-200 or 1e200 neither vanish nor overflow. (Not every library's hypot of three takes that
+    // care.)
+    return std::hypot(std::hypot(v.x, v.y), v.z);
 }
 
 } // namespace
