@@ -402,6 +402,7 @@ class HttpSource final : public ByteSource {
         answer.contentRange = field(head, http::field::content_range);
         answer.etag = field(head, http::field::etag);
         answer.lastModified = field(head, http::field::last_modified);
+        answer.retryAfter = field(head, http::field::retry_after);
         if (auto length = parser.content_length())
             answer.contentLength = *length;
         return answer;

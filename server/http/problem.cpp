@@ -159,7 +159,8 @@ HttpResponse jobProblem(const Error& error) {
         return problemResponse({workTooLarge, error.what});
     case ErrorCode::cancelled:
         return problemResponse({outOfTime, "the answer took longer than the server gives to one request"});
-    case ErrorCode::networkFailed: {
+    case ErrorCode::networkFailed:
+    case ErrorCode::accessDenied: {
         HttpResponse response =
             problemResponse({isTimeout(error) ? upstreamTimedOut : upstreamFailed, error.what});
         response.set("Retry-After", "5");

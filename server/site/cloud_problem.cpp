@@ -12,6 +12,7 @@ HttpResponse cloudProblem(const Error& error) {
     case ErrorCode::corrupt:
     case ErrorCode::unsupported:
     case ErrorCode::networkFailed:
+    case ErrorCode::accessDenied:
     case ErrorCode::changed:
     case ErrorCode::cancelled:
         return jobProblem(error);

@@ -18,7 +18,8 @@ Result<std::shared_ptr<const CloudVersion>> readVersion(std::shared_ptr<Upstream
 
 // Whether the upstream can't be asked, which says nothing of the version that it has.
 bool isOutOfReach(const Error& error) {
-    return error.code == ErrorCode::networkFailed || error.code == ErrorCode::cancelled;
+    return error.code == ErrorCode::networkFailed || error.code == ErrorCode::accessDenied ||
+           error.code == ErrorCode::cancelled;
 }
 
 } // namespace

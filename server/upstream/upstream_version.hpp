@@ -18,7 +18,8 @@ namespace stipple::server {
 class UpstreamVersion : public std::enable_shared_from_this<UpstreamVersion> {
   public:
     // What one look at `url` found: asks for the first bytes, and takes whatever version they are of. Waits.
-    // Errors: notFound, networkFailed (isTimeout()), unsupported (no ranges), `cancelled` by `stop`.
+    // Errors: notFound, networkFailed (isTimeout()), accessDenied, unsupported (no ranges), `cancelled` by
+    // `stop`.
     static Result<std::shared_ptr<UpstreamVersion>>
     find(std::shared_ptr<Upstream> upstream, const std::string& url, const std::atomic<bool>& stop);
 

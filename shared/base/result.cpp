@@ -28,6 +28,8 @@ const char* errorCodeName(ErrorCode code) {
         return "writeFailed";
     case ErrorCode::networkFailed:
         return "networkFailed";
+    case ErrorCode::accessDenied:
+        return "accessDenied";
     case ErrorCode::cancelled:
         return "cancelled";
     }

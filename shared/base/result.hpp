@@ -23,6 +23,7 @@ enum class ErrorCode {
     ioFailed,        // the operating system refused
     writeFailed,     // an output can't be made or written
     networkFailed,   // the connection, or a status that is not an answer
+    accessDenied,    // the server wants to know who asks, or has nothing for whoever does
     cancelled,       // the caller took the request back
 };
 
@@ -31,6 +32,8 @@ struct Error {
     std::string what;   // what was being done and what went wrong: "the header ends after 12 of 128 bytes"
     std::string where;  // file or address, and position: "town.stipple, byte 4096"
     std::string advice; // what to do: "convert the scan again"; may be empty
+    // networkFailed: the server wants to be left alone for so long (Retry-After); 0: it doesn't say.
+    int retryAfterSeconds = 0;
 
     // One clear sentence or two, for a person: "town.stipple, byte 4096: the header … . Convert the …"
     std::string sentence() const {

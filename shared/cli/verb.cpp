@@ -12,6 +12,7 @@ int exitCodeOf(const Error& error) {
     case ErrorCode::outOfMemory:
         return outputError;
     case ErrorCode::networkFailed:
+    case ErrorCode::accessDenied:
         return networkError;
     case ErrorCode::cancelled:
         return interrupted;

@@ -13,6 +13,7 @@ constexpr const char* timeoutText = "the server did not answer in time";
 constexpr const char* reloadAdvice = "open it again";
 constexpr const char* rangeAdvice =
     "serve the file with `stipple serve`, or with any server that answers byte ranges";
+constexpr int longestPauseSeconds = 3600; // that a server can ask for
 
 // RFC 9110 §14.4: "bytes first-last/size" or "bytes */size"; a size of "*" is unknown.
 struct ContentRange {
@@ -114,6 +115,33 @@ Result<std::uint64_t> judgeWhole(ByteRange asked, const RangeAnswer& answer, Fil
                  rangeAdvice};
 }
 
+Error accessError(int status, const std::string& where) {
+    if (status == 401)
+        return {ErrorCode::accessDenied, "the server wants to know who asks (status 401)", where,
+                "give a token that it accepts, or an address that has one in it"};
+    return {ErrorCode::accessDenied, "the server refuses access (status 403)", where,
+            "ask for the right to read it; the address may be signed and have expired"};
+}
+
+// RFC 9110 §10.2.3, as a number of seconds. A date is taken as if the field weren't there.
+int secondsOf(std::string_view retryAfter) {
+    std::uint64_t seconds = 0;
+    if (!takeNumber(retryAfter, seconds) || !retryAfter.empty())
+        return 0;
+    return static_cast<int>(std::min<std::uint64_t>(seconds, longestPauseSeconds));
+}
+
+Error statusError(const RangeAnswer& answer, const std::string& where) {
+    Error error{ErrorCode::networkFailed, cat("the server answered with status ", answer.status), where,
+                "try again later"};
+    if (answer.status == 429)
+        error.what = "the server has had too many requests (status 429)";
+    if (answer.status == 503)
+        error.what = "the server is busy or away (status 503)";
+    error.retryAfterSeconds = secondsOf(answer.retryAfter);
+    return error;
+}
+
 } // namespace
 
 std::string rangeField(ByteRange range) {
@@ -146,11 +174,9 @@ Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answe
     }
     case 401:
     case 403:
-        return Error{ErrorCode::networkFailed, cat("the server refuses access (status ", answer.status, ")"),
-                     where, ""};
+        return accessError(answer.status, where);
     default:
-        return Error{ErrorCode::networkFailed, cat("the server answered with status ", answer.status), where,
-                     "try again later"};
+        return statusError(answer, where);
     }
 }
 

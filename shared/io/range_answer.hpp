@@ -5,6 +5,9 @@
 //   200 to a range from byte 0 that holds a whole file  the body is read (a tiny file on a plain server)
 //   200 otherwise                                       the server ignores Range: nothing is read
 //   another file than before                            `changed`, whichever status says so
+//   401, 403                                            `accessDenied`: asking again would not help
+//   429, 503 and all others                             `networkFailed`, with the pause that Retry-After
+//   names
 //
 // The version is pinned by what the first answer said: ETag, else Last-Modified, and the file's size. Later
 // answers are compared with it. No If-Range or If-Match is sent: they would make every cross-origin read
@@ -26,6 +29,7 @@ struct RangeAnswer {
     std::string etag;
     std::string lastModified;
     std::optional<std::uint64_t> contentLength; // absent also when the body is content-coded
+    std::string retryAfter = {};
 };
 
 // The version of a file that a source reads. A default one pins nothing yet.

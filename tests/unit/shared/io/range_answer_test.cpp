@@ -98,6 +98,20 @@ TEST_CASE("the same version is read on, also where a validator is hidden") {
 TEST_CASE("absent, past the end, refused and broken stay different things") {
     CHECK(codeOf({0, 50}, {404, "", "", "", 0}) == ErrorCode::notFound);
     CHECK(codeOf({2000, 50}, {416, "bytes */1000", "\"v1\"", "", 0}, pinned) == ErrorCode::truncated);
-    CHECK(codeOf({0, 50}, {403, "", "", "", 0}) == ErrorCode::networkFailed);
+    CHECK(codeOf({0, 50}, {401, "", "", "", 0}) == ErrorCode::accessDenied);
+    CHECK(codeOf({0, 50}, {403, "", "", "", 0}) == ErrorCode::accessDenied);
     CHECK(codeOf({0, 50}, {503, "", "", "", 0}) == ErrorCode::networkFailed);
+}
+
+TEST_CASE("a busy server says for how long it wants to be left alone") {
+    auto pauseOf = [](int status, const std::string& retryAfter) {
+        FileVersion version;
+        RangeAnswer answer{status, "", "", "", 0, retryAfter};
+        return judgeRangeAnswer({0, 50}, answer, version, where).error().retryAfterSeconds;
+    };
+    CHECK(pauseOf(429, "7") == 7);
+    CHECK(pauseOf(503, "120") == 120);
+    CHECK(pauseOf(503, "99999999999") == 3600);
+    for (const char* no : {"", "-1", "1.5", "7 s", "99999999999999999999", "Wed, 21 Oct 2026 07:28:00 GMT"})
+        CHECK(pauseOf(503, no) == 0);
 }
