@@ -41,6 +41,8 @@ std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadIt
         const LoadItem& item = items[index];
         if (taken[index] || item.key.cloud != items[first].key.cloud || item.mayEndEarly)
             return false;
+        if (!limits.mergesNodes && item.key.id != items[first].key.id)
+            return false;
         std::uint64_t gap = item.range.offset > range.end()   ? item.range.offset - range.end()
                             : range.offset > item.range.end() ? range.offset - item.range.end()
                                                               : 0;

@@ -46,6 +46,7 @@ struct LoadLimits {
     std::uint64_t bytes = 8ull << 20;
     std::uint64_t mergeGapBytes = 4096;
     std::uint64_t mergedRequestBytes = 1ull << 20;
+    bool mergesNodes = true; // false: only parts of one node travel together
 };
 
 class LoadQueue {

@@ -54,6 +54,7 @@ struct SelectionInput {
     double detailPixels =
         0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
     Skips skips;
+    bool wholeNodes = false; // nodes are wanted with all their strata, whatever the picture needs of them
 };
 
 struct SelectedNode {

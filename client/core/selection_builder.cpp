@@ -51,7 +51,9 @@ void SelectionBuilder::want(std::uint32_t cloud, std::uint32_t node, double pixe
                             std::uint32_t here) {
     int strata = strataFor(input_.clouds[cloud].hierarchy->node(node).entry.pointCount, points);
     bool firstStratumOnly = here == 0 && pixels >= coarseHeights * input_.height;
-    if (firstStratumOnly)
+    if (input_.wholeNodes)
+        result_.loads.push_back({cloud, node, strataCount});
+    else if (firstStratumOnly)
         beginnings_.push_back({cloud, node, 1});
     else
         result_.loads.push_back({cloud, node, strata});

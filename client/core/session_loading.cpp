@@ -21,7 +21,7 @@ std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
 
 } // namespace
 
-SessionLoading::SessionLoading(NodeDecoder& decoder, SessionCounters& counters, ViewSession::Now now)
+SessionLoading::SessionLoading(NodeDecoder& decoder, SessionCounters& counters, const ViewSession::Now& now)
     : counters_(counters), now_(now), queue_(counters), decoding_(decoder, cache_, counters) {}
 
 SessionLoading::~SessionLoading() {
@@ -115,9 +115,9 @@ void SessionLoading::want(std::vector<LoadItem> items) {
 }
 
 void SessionLoading::start(const SessionLimits& limits) {
-    queue_.start(
-        {limits.requestsInFlight, limits.bytesInFlight, limits.mergeGapBytes, limits.mergedRequestBytes},
-        decoding_.bytesPending(), now_());
+    queue_.start({limits.requestsInFlight, limits.bytesInFlight, limits.mergeGapBytes,
+                  limits.mergedRequestBytes, limits.techniques.merging},
+                 decoding_.bytesPending(), now_());
 }
 
 // --- arrivals ------------------------------------------------------------------------------------------

@@ -23,7 +23,7 @@ namespace stipple {
 class SessionLoading {
   public:
     // Decoder and counters outlive this.
-    SessionLoading(NodeDecoder& decoder, SessionCounters& counters, ViewSession::Now now);
+    SessionLoading(NodeDecoder& decoder, SessionCounters& counters, const ViewSession::Now& now);
     ~SessionLoading();
 
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);

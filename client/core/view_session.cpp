@@ -20,7 +20,7 @@ namespace {
 // A node's way:  bytes (LoadQueue) → NodeDecoding → CachedNode::node → DrawNode
 class Session final : public ViewSession {
   public:
-    Session(NodeDecoder& decoder, const SessionLimits& limits, Now now)
+    Session(NodeDecoder& decoder, const SessionLimits& limits, const Now& now)
         : limits_(limits), loading_(decoder, counters_, now), painter_(counters_) {}
 
     CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) override {
@@ -190,6 +190,7 @@ class Session final : public ViewSession {
         input.detailPixels = isContinuous ? style_.detail.spacingPixels * coarser : 0;
         input.clips = clips_.hidesPoints() ? &clips_ : nullptr;
         input.skips = limits_.skips;
+        input.wholeNodes = !limits_.techniques.prefixes;
         selection_ = select(input);
         selection_.counters.coarserForTime = coarser;
         selection_.counters.complete &= !loading_.anyOpening();
@@ -416,7 +417,8 @@ class Session final : public ViewSession {
 
 } // namespace
 
-std::unique_ptr<ViewSession> ViewSession::create(NodeDecoder& decoder, const SessionLimits& limits, Now now) {
+std::unique_ptr<ViewSession> ViewSession::create(NodeDecoder& decoder, const SessionLimits& limits,
+                                                 const Now& now) {
     return std::make_unique<Session>(decoder, limits, now);
 }
 

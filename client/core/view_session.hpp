@@ -7,6 +7,7 @@
 #include "client/core/camera.hpp"
 #include "client/core/counters.hpp"
 #include "client/core/frame_plan.hpp"
+#include "client/core/loading_techniques.hpp"
 #include "client/core/node_decoder.hpp"
 #include "client/core/point_record.hpp"
 #include "client/core/priority_weights.hpp"
@@ -15,6 +16,7 @@
 #include "shared/io/byte_source.hpp"
 
 #include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,6 +36,7 @@ struct SessionLimits {
     std::uint64_t mergeGapBytes = 4096;            // ranges this near travel as one request
     std::uint64_t mergedRequestBytes = 1ull << 20; // a merged request's largest size
     Skips skips;
+    LoadingTechniques techniques; // not part of the JSON
 };
 
 inline constexpr std::size_t maxRecentErrors = 32;
@@ -53,12 +56,12 @@ struct CloudState {
 
 class ViewSession {
   public:
-    // When it is; only pauses between attempts depend on it. Tests bring their own.
-    using Now = std::chrono::steady_clock::time_point (*)();
+    // When it is; pauses between attempts depend on it. Tests bring their own.
+    using Now = std::function<std::chrono::steady_clock::time_point()>;
 
     // `decoder` outlives the session.
     static std::unique_ptr<ViewSession> create(NodeDecoder& decoder, const SessionLimits& limits = {},
-                                               Now now = &std::chrono::steady_clock::now);
+                                               const Now& now = &std::chrono::steady_clock::now);
     virtual ~ViewSession() = default;
 
     virtual CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) = 0;

@@ -1,0 +1,13 @@
+// What loading does to show more for each byte and sooner. On for everybody; each can be switched off to
+// measure what it brings (tests/bench/streaming_bench.cpp).
+#pragma once
+
+namespace stipple {
+
+struct LoadingTechniques {
+    bool prefixes = true; // of a node only the strata that the picture needs
+    bool merging = true;  // nodes that are neighbours in the file travel together
+    friend bool operator==(const LoadingTechniques&, const LoadingTechniques&) = default;
+};
+
+} // namespace stipple

@@ -1,0 +1,173 @@
+// Time, requests and bytes until the picture is right, over simulated networks: streaming_bench CLOUD...
+// For each cloud, network (Mbit/s x ms of round trip) and way of loading, sums over all cameras of all paths
+// of what it took from setting the camera until the mean pixel error fell below 10, 5 and 2 %, and until
+// nothing more was wanted. Prints a Markdown table.
+//
+// Errors are against the picture of all points in the same style (by the software renderer, which is within
+// the bounds of NUMERICS.md of the reference), not against what each way ends with: ways that end with
+// different points are then measured by the same thing, and what a way never shows counts against it.
+#include "client/core/json.hpp"
+#include "shared/base/text.hpp"
+#include "shared/cli/verb.hpp"
+#include "shared/format/cloud_file.hpp"
+#include "shared/io/file_source.hpp"
+#include "tests/bench/streaming_run.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+using namespace stipple;
+using namespace stipple::test;
+
+namespace {
+
+struct Options {
+    std::vector<std::string> clouds;
+    std::vector<std::string> networks{"5x5",    "5x50",  "5x200",  "50x5",   "50x50",
+                                      "50x200", "500x5", "500x50", "500x200"};
+    std::vector<std::string> paths{"fly-over", "walk", "jump"};
+    std::vector<std::string> ways{"all", "plain"};
+    int frames = 3, connections = 6;
+    std::uint64_t budget = 1'000'000;
+    bool each = false;
+};
+
+template <class T>
+T need(Result<T> result) {
+    if (!result.ok()) {
+        std::fprintf(stderr, "streaming_bench: %s\n", result.error().sentence().c_str());
+        std::exit(1);
+    }
+    return std::move(*result);
+}
+
+// Everything on; everything off; and everything on but one.
+std::vector<StreamingWay> allWays(std::uint64_t budget) {
+    StreamingWay all{"all", {}, {}};
+    all.limits.pointBudget = budget;
+    all.limits.cacheBytes = 2ull << 30;
+    all.detail.mode = DetailMode::continuous;
+    all.detail.spacingPixels = 1;
+    std::vector<StreamingWay> ways{all};
+    auto without = [&](const char* name, const auto& change) {
+        ways.push_back(all);
+        ways.back().name = name;
+        change(ways.back());
+    };
+    without("plain", [](StreamingWay& way) {
+        way.detail.mode = DetailMode::discrete;
+        way.limits.techniques = {false, false};
+        way.limits.skips.unused = false;
+    });
+    without("levels", [](StreamingWay& way) { way.detail.mode = DetailMode::discrete; });
+    without("whole nodes", [](StreamingWay& way) { way.limits.techniques.prefixes = false; });
+    without("all attributes", [](StreamingWay& way) { way.limits.skips.unused = false; });
+    without("no merging", [](StreamingWay& way) { way.limits.techniques.merging = false; });
+    return ways;
+}
+
+NetworkOptions networkOf(const std::string& text, int connections) {
+    double megabits = 0, milliseconds = 0;
+    int read = 0;
+    if (std::sscanf(text.c_str(), "%lfx%lf%n", &megabits, &milliseconds, &read) != 2 ||
+        static_cast<std::size_t>(read) != text.size() || megabits <= 0 || milliseconds < 0)
+        need(Result<int>(
+            Error{ErrorCode::invalidArgument, "a network is MBITxMS, for example 50x20", text, ""}));
+    NetworkOptions options;
+    options.megabitsPerSecond = megabits;
+    options.roundTrip = std::chrono::nanoseconds(static_cast<std::int64_t>(milliseconds * 1e6));
+    options.connections = connections;
+    return options;
+}
+
+std::shared_ptr<const HostedFile> hosted(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    auto file = std::make_shared<HostedFile>();
+    file->bytes.assign(std::istreambuf_iterator<char>(stream), {});
+    return file;
+}
+
+std::vector<StreamingScene> scenesOf(const std::string& path, const Options& options) {
+    auto source = need(openFileSource(path));
+    BoxD bounds = need(CloudReader::open(*source))->metadata().worldBounds();
+    auto file = hosted(path);
+    std::vector<StreamingScene> scenes;
+    for (const std::string& name : options.paths) {
+        StreamingScene scene;
+        scene.name = name;
+        scene.file = file;
+        scene.cameras = need(bench::builtInPath(name, bounds, options.frames)).cameras;
+        scene.targets = need(targetPictures(path, scene.cameras, scene.width, scene.height));
+        scenes.push_back(std::move(scene));
+    }
+    return scenes;
+}
+
+void cell(const Milestone& milestone) {
+    if (milestone.isReached)
+        std::printf(" %.2f, %.0f, %.2f |", milestone.seconds, milestone.requests, milestone.bytes / 1e6);
+    else
+        std::printf(" - |");
+}
+
+void row(const std::string& cloud, const std::string& network, const std::string& way,
+         const StreamingResult& result, double runs) {
+    std::printf("| %s | %s | %s |", cloud.c_str(), network.c_str(), way.c_str());
+    cell(result.firstPicture);
+    for (const Milestone& milestone : result.belowError)
+        cell(milestone);
+    cell(result.settled);
+    std::printf(" %.2f %% |\n", 100 * result.settledError / runs);
+    std::fflush(stdout);
+}
+
+void measure(const std::string& path, const Options& options) {
+    std::vector<StreamingScene> scenes = scenesOf(path, options);
+    std::string cloud = path.substr(path.find_last_of('/') + 1);
+    for (const std::string& network : options.networks)
+        for (const StreamingWay& way : allWays(options.budget)) {
+            if (std::find(options.ways.begin(), options.ways.end(), way.name) == options.ways.end())
+                continue;
+            std::optional<StreamingResult> sum;
+            for (const StreamingScene& scene : scenes) {
+                StreamingResult result =
+                    need(runStreaming(scene, way, networkOf(network, options.connections)));
+                if (options.each)
+                    row(cloud + ", " + scene.name, network, way.name, result, 1);
+                if (sum)
+                    *sum += result;
+                else
+                    sum = result;
+            }
+            row(cloud, network, way.name, *sum, static_cast<double>(scenes.size()));
+        }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    CLI::App program("Time, requests and bytes until the picture is right, over simulated networks");
+    program.add_option("clouds", options.clouds, ".stipple files")->required()->check(CLI::ExistingFile);
+    program.add_option("--networks", options.networks, "MBITxMS, …")->delimiter(',')->capture_default_str();
+    program.add_option("--paths", options.paths, "Camera paths of `stipple bench`")
+        ->delimiter(',')
+        ->capture_default_str();
+    program.add_option("--ways", options.ways, "Of loading")->delimiter(',')->capture_default_str();
+    program.add_option("--frames", options.frames, "Cameras of a path")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    program.add_option("--budget", options.budget, "Points")->capture_default_str();
+    program.add_option("--connections", options.connections, "Of the client to the server")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    program.add_flag("--each", options.each, "A row for each path, too");
+    CLI11_PARSE(program, argc, argv);
+    std::printf(
+        "| cloud | Mbit/s x ms | way | first picture: s, requests, MB | below 10 %% | 5 %% | 2 %% | settled "
+        "| settled error |\n|---|---|---|---|---|---|---|---|---|\n");
+    for (const std::string& cloud : options.clouds)
+        measure(cloud, options);
+}
