@@ -3,6 +3,7 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace stipple {
 
@@ -48,11 +49,45 @@ void CloudLoader::fail(const Error& error) {
     residency.clear();
 }
 
+void CloudLoader::reset() {
+    state.stage = CloudStage::opening;
+    state.error = {};
+    state.metadata = nullptr;
+    state.interrupted.reset();
+    fetched = {};
+    openingNeeds.reset();
+    opened = {};
+    hierarchy = {};
+    residency.clear();
+    decodeFailures.clear();
+    damagedChunks.clear();
+    lostNodes.clear();
+    lostChunks.clear();
+    needs = {};
+}
+
+void CloudLoader::loseNode(std::uint32_t node, bool mayPass) {
+    residency[node].failed = true;
+    if (mayPass)
+        lostNodes.push_back(node);
+}
+
+void CloudLoader::loseChunk(std::uint32_t parent, bool mayPass) {
+    hierarchy.markChildrenFailed(parent);
+    if (mayPass)
+        lostChunks.push_back(parent);
+}
+
+void CloudLoader::takeUpLost() {
+    for (std::uint32_t node : std::exchange(lostNodes, {}))
+        residency[node].failed = false;
+    for (std::uint32_t parent : std::exchange(lostChunks, {}))
+        hierarchy.markChildrenMissing(parent);
+}
+
 Status CloudLoader::addChunk(std::uint32_t parent, ByteSpan block) {
     Result<std::vector<NodeEntry>> nodes = format->parseChunk(opened, block);
     Status status = nodes.ok() ? hierarchy.add(parent, std::move(*nodes)) : Status(nodes.error());
-    if (!status.ok())
-        hierarchy.markChildrenFailed(parent);
     residency.resize(hierarchy.size());
     return status;
 }
@@ -73,6 +108,11 @@ LoadItem CloudLoader::itemFor(LoadKind kind, std::uint64_t id, ByteRange range) 
         ByteSpan head = *fetched.find({range.offset, here});
         item.head.assign(head.begin(), head.end());
     }
+    ByteRange rest{range.offset + here, range.size - here};
+    if (std::uint64_t more = kept ? kept->headBytes(state.id, rest) : 0; more > 0) {
+        kept->append(state.id, {rest.offset, more}, item.head);
+        here += more;
+    }
     item.range = {range.offset + here, range.size - here};
     return item;
 }
@@ -88,7 +128,13 @@ std::optional<LoadItem> CloudLoader::openingItem() const {
 }
 
 LoadItem CloudLoader::chunkItem(std::uint32_t parent) const {
-    return itemFor(LoadKind::chunk, parent, hierarchy.node(parent).entry.childChunk);
+    ByteRange range = hierarchy.node(parent).entry.childChunk;
+    if (!damagedChunks.contains(parent))
+        return itemFor(LoadKind::chunk, parent, range);
+    LoadItem item;
+    item.key = {state.id, LoadKind::chunk, parent};
+    item.range = range;
+    return item;
 }
 
 std::optional<LoadItem> CloudLoader::pictureItem(std::uint32_t node, int strata,

@@ -4,15 +4,18 @@
 
 #include "client/core/attribute_needs.hpp"
 #include "client/core/hierarchy.hpp"
+#include "client/core/kept_bytes.hpp"
 #include "client/core/load_queue.hpp"
 #include "client/core/node_cache.hpp"
 #include "client/core/node_source.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/view_session.hpp"
 
+#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -29,7 +32,11 @@ struct CloudLoader {
     Hierarchy hierarchy;
     std::vector<NodeResidency> residency;                  // parallel to hierarchy's nodes
     std::unordered_map<std::uint32_t, int> decodeFailures; // by node
+    std::set<std::uint32_t> damagedChunks;                 // by node above; fetched once more
+    std::vector<std::uint32_t> lostNodes, lostChunks;      // given up, but another time they may come
     AttributeNeeds needs;                                  // of the style
+    const KeptBytes* kept = nullptr;                       // of the session
+    std::optional<std::chrono::steady_clock::time_point> reloadedAt; // its file was replaced
 
     bool ready() const { return state.stage == CloudStage::ready; }
     bool opening() const { return state.stage == CloudStage::opening; }
@@ -37,9 +44,18 @@ struct CloudLoader {
     // Opens as far as the fetched bytes allow; the state afterwards says how far.
     void advanceOpening();
     void fail(const Error& error);
+    // To the state of a cloud that was just added, with the same source.
+    void reset();
+    // A file that is replaced again soon is another one with each answer, as far as anybody can tell.
+    bool mayReload(std::chrono::steady_clock::time_point now) const {
+        return ready() && (!reloadedAt || now - *reloadedAt > std::chrono::minutes(10));
+    }
+    void loseNode(std::uint32_t node, bool mayPass);
+    void loseChunk(std::uint32_t parent, bool mayPass);
+    void takeUpLost(); // what may pass is wanted again
     // The error with the source's name in its place.
     Error placed(const Error& error) const;
-    // Takes in a chunk with the children of node `parent`.
+    // Takes in a chunk with the children of node `parent`. After an error all is as it was.
     Status addChunk(std::uint32_t parent, ByteSpan block);
     // Renews what can be drawn of a node from its cache entry (null: none).
     void updateResidency(std::uint32_t node, const CachedNode* cached);

@@ -42,9 +42,16 @@ struct SessionCounters {
     std::uint64_t requests = 0;       // byte ranges asked for, after merging
     std::uint64_t requestsMerged = 0; // wanted ranges that travelled with a neighbour
     std::uint64_t requestsFailed = 0;
-    std::uint64_t requestsCancelled = 0;
+    std::uint64_t requestsCancelled = 0; // nothing of them was wanted any more
+    std::uint64_t requestsLetFinish = 0; // nor of these, but they were nearly here
+    std::uint64_t requestsRetried = 0;   // after a failure that may pass
     std::uint64_t bytesRequested = 0;
     std::uint64_t bytesReceived = 0;
+    std::uint64_t bytesWasted = 0;       // that had come of cancelled requests, as far as sources tell
+    std::uint64_t bytesFetchedTwice = 0; // received again: evicted in between, damaged, or read over as a gap
+    double networkBytesPerSecond = 0;    // as measured (transfer_estimate.hpp); 0: not yet
+    double networkDelaySeconds = 0;
+    std::uint64_t cloudsReloaded = 0; // their file was replaced
     std::uint64_t chunksLoaded = 0;
     std::uint64_t nodesDecoded = 0; // decodings; a node refined by a stratum counts again
     std::uint64_t pointsDecoded = 0;

@@ -63,6 +63,10 @@ void Hierarchy::markChildrenFailed(std::size_t parent) {
     nodes_[parent].childrenState = ChildrenState::failed;
 }
 
+void Hierarchy::markChildrenMissing(std::size_t parent) {
+    nodes_[parent].childrenState = ChildrenState::missing;
+}
+
 // Entries are appended one by one to a copy of nothing but the end of nodes_; an error cuts it off again.
 Status Hierarchy::append(std::int32_t root, std::vector<NodeEntry> entries) {
     std::size_t before = nodes_.size();

@@ -52,6 +52,7 @@ class Hierarchy {
     // hierarchy is as it was.
     Status add(std::size_t parent, std::vector<NodeEntry> nodes);
     void markChildrenFailed(std::size_t parent);
+    void markChildrenMissing(std::size_t parent); // they can be had again
 
     std::size_t size() const { return nodes_.size(); }
     // Index of the node of that key; -1 if it is not known.

@@ -274,8 +274,15 @@ json toJson(const SessionCounters& c) {
             {"requestsMerged", c.requestsMerged},
             {"requestsFailed", c.requestsFailed},
             {"requestsCancelled", c.requestsCancelled},
+            {"requestsLetFinish", c.requestsLetFinish},
+            {"requestsRetried", c.requestsRetried},
             {"bytesRequested", c.bytesRequested},
             {"bytesReceived", c.bytesReceived},
+            {"bytesWasted", c.bytesWasted},
+            {"bytesFetchedTwice", c.bytesFetchedTwice},
+            {"networkBytesPerSecond", c.networkBytesPerSecond},
+            {"networkDelaySeconds", c.networkDelaySeconds},
+            {"cloudsReloaded", c.cloudsReloaded},
             {"chunksLoaded", c.chunksLoaded},
             {"nodesDecoded", c.nodesDecoded},
             {"pointsDecoded", c.pointsDecoded},
@@ -309,6 +316,8 @@ json toJson(const CloudState& cloud) {
                   {"visible", cloud.visible}};
     if (cloud.stage == CloudStage::failed)
         value["error"] = toJson(cloud.error);
+    if (cloud.interrupted)
+        value["interrupted"] = toJson(*cloud.interrupted);
     if (cloud.metadata) {
         json attributes = json::array();
         for (const Attribute& attribute : cloud.metadata->schema.attributes)

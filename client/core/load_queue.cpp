@@ -3,6 +3,7 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 namespace stipple {
@@ -13,6 +14,9 @@ struct LoadQueue::Request {
     ByteRange range;
     std::vector<LoadItem> items;
     bool cancelled = false;
+    bool isLetFinish = false; // nothing of it is wanted
+    bool hasBegun = false;
+    TransferEstimate::Sent sent;
 };
 
 namespace {
@@ -27,15 +31,21 @@ ByteRange unionOf(ByteRange a, ByteRange b) {
     return {offset, std::max(a.end(), b.end()) - offset};
 }
 
+// Larger gaps may take up half of a request.
+constexpr std::uint64_t smallGapBytes = 4096;
+
 // Takes `first` and then its neighbours in the file, alternately after and before, as far as limits allow.
-// `order`: indices of items by cloud and offset; `place`: where an item is in it. Marks what it takes.
+// `order`: indices of items by cloud and offset; `place`: where an item is in it. Marks what it takes. A gap
+// with bytes that are here, or on their way, is not read over.
 std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadItem>& items,
                                      const std::vector<std::size_t>& order,
                                      const std::vector<std::size_t>& place, std::vector<bool>& taken,
-                                     const LoadLimits& limits, ByteRange& range) {
+                                     const LoadLimits& limits, const std::function<bool(ByteRange)>& isHere,
+                                     ByteRange& range) {
     std::vector<std::size_t> members{first};
     taken[first] = true;
     range = items[first].range;
+    std::uint64_t useful = range.size;
     auto tryMember = [&](std::size_t at) {
         std::size_t index = order[at];
         const LoadItem& item = items[index];
@@ -43,12 +53,19 @@ std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadIt
             return false;
         if (!limits.mergesNodes && item.key.id != items[first].key.id)
             return false;
-        std::uint64_t gap = item.range.offset > range.end()   ? item.range.offset - range.end()
-                            : range.offset > item.range.end() ? range.offset - item.range.end()
-                                                              : 0;
+        ByteRange gap{range.end(), 0};
+        if (item.range.offset > range.end())
+            gap.size = item.range.offset - range.end();
+        else if (range.offset > item.range.end())
+            gap = {item.range.end(), range.offset - item.range.end()};
         ByteRange merged = unionOf(range, item.range);
-        if (gap > limits.mergeGapBytes || merged.size > limits.mergedRequestBytes)
+        if (gap.size > limits.mergeGapBytes || merged.size > limits.mergedRequestBytes)
             return false;
+        if (gap.size > smallGapBytes && merged.size > 2 * (useful + item.range.size))
+            return false;
+        if (gap.size > 0 && isHere(gap))
+            return false;
+        useful += item.range.size;
         taken[index] = true;
         members.push_back(index);
         range = merged;
@@ -69,19 +86,27 @@ std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadIt
 
 } // namespace
 
-LoadQueue::Clock::duration LoadQueue::pauseAfter(int attempts) {
-    return std::chrono::milliseconds(250 << (2 * std::clamp(attempts - 1, 0, 4)));
+LoadQueue::Clock::duration LoadQueue::pauseAfter(int attempts) const {
+    // SplitMix64 (Steele, Lea, Flood 2014)
+    std::uint64_t random = seed_ + static_cast<std::uint64_t>(attempts) * 0x9E3779B97F4A7C15u;
+    random = (random ^ (random >> 30)) * 0xBF58476D1CE4E5B9u;
+    random = (random ^ (random >> 27)) * 0x94D049BB133111EBu;
+    random ^= random >> 31;
+    int milliseconds = 250 << (2 * std::clamp(attempts - 1, 0, 2));
+    return std::chrono::milliseconds(milliseconds * 3 / 4 +
+                                     static_cast<int>(random % static_cast<unsigned>(milliseconds / 2 + 1)));
 }
 
-LoadQueue::LoadQueue(SessionCounters& counters)
-    : counters_(counters), self_(std::make_shared<LoadQueue*>(this)) {}
+LoadQueue::LoadQueue(SessionCounters& counters, std::uint64_t seed)
+    : counters_(counters), seed_(seed), self_(std::make_shared<LoadQueue*>(this)) {}
 
 LoadQueue::~LoadQueue() {
     *self_ = nullptr; // completions that come later find nobody
 }
 
 void LoadQueue::addSource(std::uint32_t cloud, ByteSource& source) {
-    sources_[cloud] = &source;
+    sources_[cloud] = {};
+    sources_[cloud].bytes = &source;
 }
 
 void LoadQueue::removeSource(std::uint32_t cloud) {
@@ -106,11 +131,18 @@ void LoadQueue::want(std::vector<LoadItem> items) {
     for (auto& [id, request] : requests_) {
         bool needed = std::any_of(request.items.begin(), request.items.end(),
                                   [&](const LoadItem& item) { return wanted.contains(item.key); });
-        if (!needed && !request.cancelled)
+        if (needed || request.cancelled)
+            continue;
+        if (!isNearlyHere(request)) {
             cancel(request);
+        } else if (!request.isLetFinish) {
+            request.isLetFinish = true;
+            ++counters_.requestsLetFinish;
+        }
     }
     std::erase_if(items, [&](const LoadItem& item) {
-        return travelling_.contains(item.key) || !sources_.contains(item.key.cloud);
+        auto source = sources_.find(item.key.cloud);
+        return travelling_.contains(item.key) || source == sources_.end() || source->second.isStopped;
     });
     waiting_ = std::move(items);
 }
@@ -124,16 +156,57 @@ void LoadQueue::cancel(Request& request) {
     bytesInFlight_ -= request.range.size;
     for (const LoadItem& item : request.items)
         travelling_.erase(item.key);
-    if (auto source = sources_.find(request.cloud); source != sources_.end())
-        source->second->cancel(request.id);
+    if (auto source = sources_.find(request.cloud); source != sources_.end()) {
+        counters_.bytesWasted += source->second.bytes->progress(request.id).bytes;
+        source->second.bytes->cancel(request.id);
+    }
 }
 
-bool LoadQueue::mayStart(const LoadItem& item, Clock::time_point now) const {
-    auto failure = failures_.find(item.key);
-    return failure == failures_.end() || failure->second.notBefore <= now;
+bool LoadQueue::isNearlyHere(const Request& request) const {
+    auto source = sources_.find(request.cloud);
+    if (source == sources_.end())
+        return false;
+    ByteSource::Progress progress = source->second.bytes->progress(request.id);
+    bool isHalfHere = progress.bytes >= request.range.size - progress.bytes;
+    return progress.hasBegun && (isHalfHere || progress.bytes + letFinishBytes_ >= request.range.size);
+}
+
+LoadQueue::Clock::time_point LoadQueue::notBefore(const LoadItem& item) const {
+    Clock::time_point earliest = sources_.at(item.key.cloud).notBefore;
+    if (auto failure = failures_.find(item.key); failure != failures_.end())
+        earliest = std::max(earliest, failure->second.notBefore);
+    return earliest;
+}
+
+// In a request that is on its way, as the gap between other things.
+bool LoadQueue::isComing(std::uint32_t cloud, ByteRange range) const {
+    return std::any_of(requests_.begin(), requests_.end(), [&](const auto& one) {
+        const Request& request = one.second;
+        return !request.cancelled && request.cloud == cloud && request.range.offset < range.end() &&
+               range.offset < request.range.end();
+    });
+}
+
+std::uint64_t LoadQueue::partBytes() const {
+    std::uint64_t bytes = 0;
+    for (const auto& [number, request] : requests_)
+        if (!request.cancelled)
+            bytes += sources_.at(request.cloud).bytes->progress(request.id).bytes;
+    return bytes;
+}
+
+void LoadQueue::lookAtProgress(Clock::time_point now) {
+    for (auto& [number, request] : requests_)
+        if (!request.cancelled && !request.hasBegun &&
+            sources_.at(request.cloud).bytes->progress(request.id).hasBegun) {
+            request.hasBegun = true;
+            estimate_.begun(request.sent, now);
+        }
 }
 
 void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::time_point now) {
+    lookAtProgress(now);
+    letFinishBytes_ = limits.letFinishBytes;
     int mostRequests = std::max(1, limits.requests);
     if (waiting_.empty() || requestsInFlight_ >= mostRequests)
         return;
@@ -149,7 +222,7 @@ void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::
 
     std::vector<bool> taken(waiting_.size()), sent(waiting_.size());
     for (std::size_t i = 0; i < taken.size(); ++i)
-        taken[i] = !mayStart(waiting_[i], now);
+        taken[i] = notBefore(waiting_[i]) > now || isComing(waiting_[i].key.cloud, waiting_[i].range);
     std::vector<std::vector<LoadItem>> sending;
     std::uint64_t bytes = bytesInFlight_ + bytesHeld;
     int requests = requestsInFlight_;
@@ -157,7 +230,12 @@ void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::
         if (taken[i])
             continue;
         ByteRange range;
-        std::vector<std::size_t> members = mergeAround(i, waiting_, order, place, taken, limits, range);
+        std::uint32_t cloud = waiting_[i].key.cloud;
+        auto isHere = [&](ByteRange gap) {
+            return sources_.at(cloud).received.overlaps(gap) || isComing(cloud, gap);
+        };
+        std::vector<std::size_t> members =
+            mergeAround(i, waiting_, order, place, taken, limits, isHere, range);
         // One request is always allowed, however large its range.
         if (bytes > 0 && (bytes >= limits.bytes || range.size > limits.bytes - bytes))
             break;
@@ -177,11 +255,13 @@ void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::
             ++kept;
         }
     waiting_.resize(kept);
+    isPipeShort_ =
+        requests >= mostRequests && bytes <= limits.pipeBytes + limits.pipeBytes / 4 && !waiting_.empty();
     for (auto& items : sending) // last: a source may answer at once
-        send(std::move(items));
+        send(std::move(items), now);
 }
 
-void LoadQueue::send(std::vector<LoadItem> items) {
+void LoadQueue::send(std::vector<LoadItem> items, Clock::time_point now) {
     std::uint64_t number = ++lastRequest_;
     Request& request = requests_[number];
     request.cloud = items.front().key.cloud;
@@ -190,6 +270,9 @@ void LoadQueue::send(std::vector<LoadItem> items) {
         request.range = unionOf(request.range, item.range);
         travelling_[item.key] = number;
     }
+    request.sent = estimate_.sent(now, partBytes());
+    counters_.requestsRetried += std::any_of(
+        items.begin(), items.end(), [&](const LoadItem& item) { return failures_.contains(item.key); });
     ++counters_.requests;
     counters_.requestsMerged += items.size() - 1;
     counters_.bytesRequested += request.range.size;
@@ -198,10 +281,12 @@ void LoadQueue::send(std::vector<LoadItem> items) {
     request.items = std::move(items);
 
     ByteRange range = request.range;
-    auto id = sources_.at(request.cloud)->read(range, [self = self_, number](Result<Bytes> bytes) {
+    reading_ = number;
+    auto id = sources_.at(request.cloud).bytes->read(range, [self = self_, number](Result<Bytes> bytes) {
         if (*self)
-            (*self)->arrivals_.push_back({number, std::move(bytes)});
+            (*self)->arrivals_.push_back({number, std::move(bytes), (*self)->reading_ == number});
     });
+    reading_ = 0;
     if (auto still = requests_.find(number); still != requests_.end())
         still->second.id = id;
 }
@@ -210,18 +295,51 @@ std::vector<Loaded> LoadQueue::take(Clock::time_point now) {
     std::vector<Loaded> loaded;
     std::vector<Arrival> arrivals = std::move(arrivals_);
     arrivals_.clear();
+    for (const Arrival& arrival : arrivals)
+        if (arrival.bytes.ok() && !arrival.isImmediate)
+            estimate_.delivered(arrival.bytes->size());
     for (Arrival& arrival : arrivals) {
         auto at = requests_.find(arrival.request);
         if (at == requests_.end())
             continue;
         Request request = std::move(at->second);
         requests_.erase(at);
-        if (arrival.bytes.ok())
-            counters_.bytesReceived += arrival.bytes->size();
+        noteArrival(request, arrival, now);
         if (!request.cancelled)
             settle(request, std::move(arrival.bytes), now, loaded);
     }
+    std::erase_if(waiting_, [&](const LoadItem& item) { return sources_.at(item.key.cloud).isStopped; });
     return loaded;
+}
+
+void LoadQueue::noteArrival(const Request& request, const Arrival& arrival, Clock::time_point now) {
+    auto source = sources_.find(request.cloud);
+    if (arrival.bytes.ok()) {
+        std::uint64_t bytes = arrival.bytes->size();
+        counters_.bytesReceived += bytes;
+        if (!arrival.isImmediate)
+            estimate_.arrived(request.sent, bytes, now, partBytes(), request.hasBegun);
+        if (source != sources_.end()) {
+            counters_.bytesFetchedTwice += source->second.received.add({request.range.offset, bytes});
+            source->second.failures = 0;
+        }
+    } else if (!request.cancelled && source != sources_.end()) {
+        noteFailure(source->second, arrival.bytes.error(), now);
+    }
+}
+
+// Requests that fail together, before the pause that the first of them caused is over, are one failure.
+void LoadQueue::noteFailure(Source& source, const Error& error, Clock::time_point now) {
+    if (error.code != ErrorCode::networkFailed && error.code != ErrorCode::accessDenied)
+        return;
+    source.last = error;
+    source.isStopped |= error.code == ErrorCode::accessDenied; // asking again would not help
+    bool isPausing = source.failures > 0 && now < source.notBefore;
+    if (!isPausing)
+        ++source.failures;
+    source.isStopped |= source.failures >= maxAttempts;
+    Clock::duration pause = std::chrono::seconds(error.retryAfterSeconds);
+    source.notBefore = std::max(source.notBefore, now + std::max(pause, pauseAfter(source.failures)));
 }
 
 void LoadQueue::settle(Request& request, Result<Bytes> bytes, Clock::time_point now,
@@ -236,6 +354,7 @@ void LoadQueue::settle(Request& request, Result<Bytes> bytes, Clock::time_point 
             fail(std::move(item), bytes.error(), now, loaded);
         return;
     }
+    keepGaps(request, *bytes);
     bool whole = bytes->size() == request.range.size;
     if (!whole && !request.items.front().mayEndEarly)
         ++counters_.requestsFailed;
@@ -258,11 +377,31 @@ void LoadQueue::settle(Request& request, Result<Bytes> bytes, Clock::time_point 
     }
 }
 
+void LoadQueue::keepGaps(const Request& request, const Bytes& bytes) {
+    std::vector<ByteRange> ranges;
+    for (const LoadItem& item : request.items)
+        ranges.push_back(item.range);
+    std::sort(ranges.begin(), ranges.end(),
+              [](const ByteRange& a, const ByteRange& b) { return a.offset < b.offset; });
+    std::uint64_t end = request.range.offset;
+    for (const ByteRange& range : ranges) {
+        if (range.offset > end && range.offset - request.range.offset <= bytes.size()) {
+            auto from = bytes.begin() + static_cast<std::ptrdiff_t>(end - request.range.offset);
+            auto to = bytes.begin() + static_cast<std::ptrdiff_t>(range.offset - request.range.offset);
+            gaps_.push_back({request.cloud, end, Bytes(from, to)});
+        }
+        end = std::max(end, range.end());
+    }
+}
+
 void LoadQueue::fail(LoadItem item, const Error& error, Clock::time_point now, std::vector<Loaded>& loaded) {
     Failure& failure = failures_[item.key];
     ++failure.attempts;
     failure.last = error;
-    if (mayPass(error.code) && failure.attempts < maxAttempts) {
+    auto source = sources_.find(item.key.cloud);
+    bool isOver = source == sources_.end() || source->second.isStopped;
+    int most = error.code == ErrorCode::networkFailed ? maxNetworkAttempts : maxAttempts;
+    if (mayPass(error.code) && failure.attempts < most && !isOver) {
         failure.notBefore = now + pauseAfter(failure.attempts);
         waiting_.insert(waiting_.begin(), std::move(item));
         return;
@@ -289,9 +428,25 @@ std::optional<Error> LoadQueue::passingFailure() const {
 LoadQueue::Clock::time_point LoadQueue::nextRetry() const {
     auto earliest = Clock::time_point::max();
     for (const LoadItem& item : waiting_)
-        if (auto failure = failures_.find(item.key); failure != failures_.end())
-            earliest = std::min(earliest, failure->second.notBefore);
+        if (failures_.contains(item.key) || sources_.at(item.key.cloud).failures > 0)
+            earliest = std::min(earliest, notBefore(item));
     return earliest;
+}
+
+std::optional<Error> LoadQueue::stopped(std::uint32_t cloud) const {
+    auto source = sources_.find(cloud);
+    if (source == sources_.end() || !source->second.isStopped)
+        return std::nullopt;
+    return source->second.last;
+}
+
+void LoadQueue::retry(std::uint32_t cloud) {
+    std::erase_if(failures_, [&](const auto& failure) { return failure.first.cloud == cloud; });
+    if (auto at = sources_.find(cloud); at != sources_.end()) {
+        at->second.failures = 0;
+        at->second.notBefore = {};
+        at->second.isStopped = false;
+    }
 }
 
 } // namespace stipple

@@ -55,6 +55,9 @@ struct SelectionInput {
         0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
     Skips skips;
     bool wholeNodes = false; // nodes are wanted with all their strata, whatever the picture needs of them
+    // Of coarse nodes the first stratum alone is wanted at first, ahead of everything. Off: whoever asks for
+    // the loads brings them in an order of his own.
+    bool beginningsFirst = true;
 };
 
 struct SelectedNode {

@@ -50,7 +50,7 @@ bool SelectionBuilder::choose(std::uint32_t cloud, std::uint32_t node, double pi
 void SelectionBuilder::want(std::uint32_t cloud, std::uint32_t node, double pixels, std::uint32_t points,
                             std::uint32_t here) {
     int strata = strataFor(input_.clouds[cloud].hierarchy->node(node).entry.pointCount, points);
-    bool firstStratumOnly = here == 0 && pixels >= coarseHeights * input_.height;
+    bool firstStratumOnly = input_.beginningsFirst && here == 0 && pixels >= coarseHeights * input_.height;
     if (input_.wholeNodes)
         result_.loads.push_back({cloud, node, strataCount});
     else if (firstStratumOnly)

@@ -10,9 +10,17 @@ namespace {
 // With several things to wait for, each is waited for this long in turn.
 constexpr std::chrono::milliseconds waitSlice{2};
 
-// A file that is another one now: nothing of its cloud can be used any more.
-bool isFatal(const Result<Bytes>& bytes) {
-    return !bytes.ok() && bytes.error().code == ErrorCode::changed;
+constexpr std::uint64_t keptBytes = 32 << 20; // of gaps
+
+// A file that is another one now: nothing of its cloud can be used any more. A server without ranges: nothing
+// more of it can be had.
+bool isFatal(const Error& error) {
+    return error.code == ErrorCode::changed || error.code == ErrorCode::unsupported;
+}
+
+bool mayPass(const Error& error) {
+    return error.code == ErrorCode::networkFailed || error.code == ErrorCode::accessDenied ||
+           error.code == ErrorCode::ioFailed;
 }
 
 std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
@@ -22,7 +30,9 @@ std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
 } // namespace
 
 SessionLoading::SessionLoading(NodeDecoder& decoder, SessionCounters& counters, const ViewSession::Now& now)
-    : counters_(counters), now_(now), queue_(counters), decoding_(decoder, cache_, counters) {}
+    : counters_(counters), now_(now),
+      queue_(counters, static_cast<std::uint64_t>(now().time_since_epoch().count())),
+      decoding_(decoder, cache_, counters) {}
 
 SessionLoading::~SessionLoading() {
     for (auto& [id, cloud] : clouds_)
@@ -36,9 +46,30 @@ CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::strin
     cloud.state.name = name;
     cloud.source = std::move(source);
     cloud.format = makeStippleNodeSource();
+    cloud.kept = &kept_;
     queue_.addSource(id, *cloud.source);
     cloud.advanceOpening();
     return id;
+}
+
+void SessionLoading::retry() {
+    for (auto& [id, cloud] : clouds_) {
+        queue_.retry(id);
+        cloud.state.interrupted.reset();
+        cloud.takeUpLost();
+        bool mayOpen =
+            cloud.state.stage == CloudStage::failed && (cloud.state.error.code == ErrorCode::networkFailed ||
+                                                        cloud.state.error.code == ErrorCode::accessDenied);
+        if (mayOpen)
+            open(cloud);
+    }
+}
+
+// From the beginning; nothing is held or on its way.
+void SessionLoading::open(CloudLoader& cloud) {
+    queue_.addSource(cloud.state.id, *cloud.source);
+    cloud.reset();
+    cloud.advanceOpening();
 }
 
 bool SessionLoading::remove(CloudId id) {
@@ -95,6 +126,11 @@ bool SessionLoading::anyOpening() const {
                        [](const auto& cloud) { return cloud.second.opening(); });
 }
 
+bool SessionLoading::anyInterrupted() const {
+    return std::any_of(clouds_.begin(), clouds_.end(),
+                       [](const auto& cloud) { return cloud.second.state.interrupted.has_value(); });
+}
+
 bool SessionLoading::idle() const {
     return !anyOpening() && local_.empty() && !decoding_.hasAnswers() && !decoding_.pending() &&
            queue_.idle();
@@ -114,10 +150,18 @@ void SessionLoading::want(std::vector<LoadItem> items) {
     queue_.want(std::move(items));
 }
 
+LoadLimits SessionLoading::loadLimits(const SessionLimits& limits) const {
+    LoadLimits most;
+    most.requests = limits.requestsInFlight;
+    most.bytes = limits.bytesInFlight;
+    most.mergeGapBytes = limits.mergeGapBytes;
+    most.mergedRequestBytes = limits.mergedRequestBytes;
+    most.mergesNodes = limits.techniques.merging;
+    return limits.techniques.adaptive ? queue_.fitted(most) : unmeasuredLimits(most);
+}
+
 void SessionLoading::start(const SessionLimits& limits) {
-    queue_.start({limits.requestsInFlight, limits.bytesInFlight, limits.mergeGapBytes,
-                  limits.mergedRequestBytes, limits.techniques.merging},
-                 decoding_.bytesPending(), now_());
+    queue_.start(loadLimits(limits), decoding_.bytesPending(), now_());
 }
 
 // --- arrivals ------------------------------------------------------------------------------------------
@@ -128,6 +172,9 @@ SessionLoading::Arrivals SessionLoading::takeArrivals() {
     local_.clear();
     for (Loaded& more : queue_.take(now_()))
         loaded.push_back(std::move(more));
+    for (LoadedGap& gap : queue_.takeGaps())
+        kept_.add(gap.cloud, gap.offset, std::move(gap.bytes));
+    kept_.limit(keptBytes);
     for (Loaded& one : loaded)
         takeLoaded(one, arrivals);
     // An inline decoder has answered by now.
@@ -140,12 +187,14 @@ SessionLoading::Arrivals SessionLoading::takeArrivals() {
 
 void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     auto at = clouds_.find(loaded.item.key.cloud);
-    if (at == clouds_.end() || at->second.state.stage == CloudStage::failed)
+    bool isStale = std::find(arrivals.failed.begin(), arrivals.failed.end(), loaded.item.key.cloud) !=
+                   arrivals.failed.end(); // of a file that was let go a moment ago
+    if (at == clouds_.end() || at->second.state.stage == CloudStage::failed || isStale)
         return;
     CloudLoader& cloud = at->second;
     auto node = static_cast<std::uint32_t>(loaded.item.key.id);
     arrivals.changed = true;
-    if (loaded.item.key.kind == LoadKind::points && !isFatal(loaded.bytes)) {
+    if (loaded.item.key.kind == LoadKind::points && (loaded.bytes.ok() || !isFatal(loaded.bytes.error()))) {
         pointQueries_.takeLoaded(cloud, node, loaded.bytes);
         return;
     }
@@ -160,14 +209,9 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
         if (cloud.state.stage == CloudStage::failed)
             failed(cloud, arrivals);
         break;
-    case LoadKind::chunk: {
-        Status added = cloud.addChunk(node, *loaded.bytes);
-        if (!added.ok())
-            remember(cloud.placed(added.error().at("chunk below node " + keyText(cloud, node))));
-        else
-            ++counters_.chunksLoaded;
+    case LoadKind::chunk:
+        takeChunk(cloud, node, *loaded.bytes);
         break;
-    }
     case LoadKind::picture:
         decoding_.takePicture(cloud, node, loaded);
         break;
@@ -179,18 +223,43 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     }
 }
 
+// The bytes may have been damaged on their way: once more.
+void SessionLoading::takeChunk(CloudLoader& cloud, std::uint32_t node, const Bytes& bytes) {
+    Status added = cloud.addChunk(node, bytes);
+    if (added.ok()) {
+        ++counters_.chunksLoaded;
+    } else if (!cloud.damagedChunks.insert(node).second) {
+        cloud.hierarchy.markChildrenFailed(node);
+        remember(cloud.placed(added.error().at("chunk below node " + keyText(cloud, node))));
+    }
+}
+
 void SessionLoading::takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error,
                                  Arrivals& arrivals) {
     auto node = static_cast<std::uint32_t>(item.key.id);
-    if (error.code == ErrorCode::changed || item.key.kind == LoadKind::opening) {
+    if (error.code == ErrorCode::changed && cloud.mayReload(now_()) && cloud.source->forgetVersion()) {
+        release(cloud.state.id);
+        arrivals.failed.push_back(cloud.state.id);
+        open(cloud);
+        cloud.reloadedAt = now_();
+        ++counters_.cloudsReloaded;
+        return;
+    }
+    if (isFatal(error) || item.key.kind == LoadKind::opening) {
         cloud.fail(error);
         failed(cloud, arrivals);
         return;
     }
+    if (queue_.stopped(cloud.state.id)) {
+        if (!cloud.state.interrupted)
+            remember(cloud.placed(error));
+        cloud.state.interrupted = cloud.placed(error);
+        return;
+    }
     if (item.key.kind == LoadKind::chunk)
-        cloud.hierarchy.markChildrenFailed(node);
+        cloud.loseChunk(node, mayPass(error));
     else
-        cloud.residency[node].failed = true;
+        cloud.loseNode(node, mayPass(error));
     remember(cloud.placed(error.at("node " + keyText(cloud, node))));
 }
 
@@ -206,6 +275,7 @@ void SessionLoading::failed(CloudLoader& cloud, Arrivals& arrivals) {
 void SessionLoading::release(CloudId id) {
     queue_.removeSource(id);
     cache_.eraseCloud(id);
+    kept_.eraseCloud(id);
     pointQueries_.cancel(id);
     std::erase_if(local_, [&](const Loaded& loaded) { return loaded.item.key.cloud == id; });
 }

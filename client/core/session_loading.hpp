@@ -6,6 +6,7 @@
 
 #include "client/core/cloud_loader.hpp"
 #include "client/core/counters.hpp"
+#include "client/core/kept_bytes.hpp"
 #include "client/core/load_queue.hpp"
 #include "client/core/node_cache.hpp"
 #include "client/core/node_decoding.hpp"
@@ -28,6 +29,7 @@ class SessionLoading {
 
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
     bool remove(CloudId id); // false if there is none
+    void retry();            // ViewSession::retry()
 
     CloudMap& clouds() { return clouds_; }
     const CloudMap& clouds() const { return clouds_; }
@@ -42,7 +44,7 @@ class SessionLoading {
 
     struct Arrivals {
         bool changed = false;        // what can be drawn, or should be asked for
-        std::vector<CloudId> failed; // clouds of which nothing is held any more
+        std::vector<CloudId> failed; // clouds of which nothing is held any more; they may be opening again
     };
     // Works off what was delivered.
     Arrivals takeArrivals();
@@ -50,8 +52,11 @@ class SessionLoading {
     // Replaces what is wanted but not on its way, most urgent first.
     void want(std::vector<LoadItem> items);
     void start(const SessionLimits& limits); // sends requests while the limits allow
+    LoadLimits loadLimits(const SessionLimits& limits) const;
+    const TransferEstimate& network() const { return queue_.network(); }
 
     bool anyOpening() const;
+    bool anyInterrupted() const;
     // Nothing is wanted, on its way or waiting to be worked off.
     bool idle() const;
     std::optional<Error> passingFailure() const { return queue_.passingFailure(); }
@@ -61,6 +66,8 @@ class SessionLoading {
     bool hasArrivals() const;
     std::ptrdiff_t awaited() const;
     void takeLoaded(Loaded& loaded, Arrivals& arrivals);
+    void open(CloudLoader& cloud);
+    void takeChunk(CloudLoader& cloud, std::uint32_t node, const Bytes& bytes);
     void takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error, Arrivals& arrivals);
     void failed(CloudLoader& cloud, Arrivals& arrivals);
     void release(CloudId id);
@@ -69,6 +76,7 @@ class SessionLoading {
     SessionCounters& counters_;
     ViewSession::Now now_;
     NodeCache cache_;
+    KeptBytes kept_;
     LoadQueue queue_;
     NodeDecoding decoding_;
     PointQueries pointQueries_;

@@ -3,12 +3,14 @@
 #include "client/core/frame_planner.hpp"
 #include "client/core/frame_time_controller.hpp"
 #include "client/core/frustum.hpp"
+#include "client/core/load_value.hpp"
 #include "client/core/plan_painter.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/session_loading.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -111,13 +113,16 @@ class Session final : public ViewSession {
     const FramePlan& plan() const override { return plan_; }
 
     bool settled() const override {
-        return !dirty_ && !planDirty_ && loading_.idle() && selection_.counters.complete;
+        return !dirty_ && !planDirty_ && loading_.idle() &&
+               (selection_.counters.complete || loading_.anyInterrupted());
     }
 
     SessionCounters counters() const override {
         SessionCounters now = counters_;
         now.cacheBytes = loading_.cache().sizeBytes();
         now.cacheBytesPeak = loading_.cache().peakBytes();
+        now.networkBytesPerSecond = loading_.network().bytesPerSecond();
+        now.networkDelaySeconds = loading_.network().delaySeconds();
         return now;
     }
 
@@ -136,6 +141,10 @@ class Session final : public ViewSession {
         return {loading_.errors().begin(), loading_.errors().end()};
     }
     std::optional<Error> passingFailure() const override { return loading_.passingFailure(); }
+    void retry() override {
+        loading_.retry();
+        dirty_ = true;
+    }
 
   private:
     bool drawsDiscs() const { return style_.shape == PointShape::disc; }
@@ -191,6 +200,7 @@ class Session final : public ViewSession {
         input.clips = clips_.hidesPoints() ? &clips_ : nullptr;
         input.skips = limits_.skips;
         input.wholeNodes = !limits_.techniques.prefixes;
+        input.beginningsFirst = !limits_.techniques.byValue;
         selection_ = select(input);
         selection_.counters.coarserForTime = coarser;
         selection_.counters.complete &= !loading_.anyOpening();
@@ -291,6 +301,41 @@ class Session final : public ViewSession {
         return {selectionIds_[node.cloud], node.node};
     }
 
+    // What to ask for of a node, and what it is worth.
+    struct NodeLoad {
+        double valuePerByte = 0;
+        std::vector<LoadItem> items;
+    };
+    NodeLoad nodeLoad(const WantedNode& wanted, std::uint64_t pieceBytes) {
+        CloudLoader& cloud = loading_.clouds().at(selectionIds_[wanted.cloud]);
+        const CachedNode* cached = loading_.cache().find(cacheKey(wanted));
+        const NodeEntry& entry = cloud.hierarchy.node(wanted.node).entry;
+        int have = cached ? cached->strataFetched : 0, strata = std::max(have, wanted.strata);
+        if (limits_.techniques.byValue && limits_.techniques.prefixes)
+            strata = nextPiece(entry, have, strata, pieceBytes);
+        NodeLoad load;
+        if (auto item = cloud.pictureItem(wanted.node, strata, cached))
+            load.items.push_back(std::move(*item));
+        cloud.addBlockItems(wanted.node, cached, load.items);
+        std::uint64_t bytes = 1;
+        for (const LoadItem& item : load.items)
+            bytes += item.range.size;
+        std::uint32_t from = have < strata ? strataPrefixPoints(entry.pointCount, have) : 0;
+        load.valuePerByte = loadValue(view_, height_, cloud.hierarchy, wanted.node, from,
+                                      strataPrefixPoints(entry.pointCount, strata)) /
+                            static_cast<double>(bytes);
+        return load;
+    }
+
+    // The fewest further strata that are worth a request.
+    static int nextPiece(const NodeEntry& entry, int have, int wanted, std::uint64_t pieceBytes) {
+        std::uint64_t before = entry.strataRange(have).size;
+        for (int strata = have + 1; strata < wanted; ++strata)
+            if (entry.strataRange(strata).size - before >= pieceBytes)
+                return strata;
+        return wanted;
+    }
+
     void wantLoads() {
         std::vector<LoadItem> items;
         for (auto& [id, cloud] : loading_.clouds())
@@ -303,13 +348,16 @@ class Session final : public ViewSession {
         // Chunks are small, and what they hide may matter more than any node that is known.
         for (const WantedChunk& chunk : selection_.chunks)
             items.push_back(loading_.clouds().at(selectionIds_[chunk.cloud]).chunkItem(chunk.node));
-        for (const WantedNode& wanted : selection_.loads) {
-            CloudLoader& cloud = loading_.clouds().at(selectionIds_[wanted.cloud]);
-            const CachedNode* cached = loading_.cache().find(cacheKey(wanted));
-            if (auto item = cloud.pictureItem(wanted.node, wanted.strata, cached))
-                items.push_back(std::move(*item));
-            cloud.addBlockItems(wanted.node, cached, items);
-        }
+        std::uint64_t pieceBytes = loading_.loadLimits(limits_).pieceBytes;
+        std::vector<NodeLoad> loads;
+        for (const WantedNode& wanted : selection_.loads)
+            loads.push_back(nodeLoad(wanted, pieceBytes));
+        if (limits_.techniques.byValue)
+            std::stable_sort(loads.begin(), loads.end(), [](const NodeLoad& a, const NodeLoad& b) {
+                return a.valuePerByte > b.valuePerByte;
+            });
+        for (NodeLoad& load : loads)
+            std::move(load.items.begin(), load.items.end(), std::back_inserter(items));
         for (const auto& [cloudIndex, node] : exact_) {
             CloudLoader& cloud = loading_.clouds().at(selectionIds_[cloudIndex]);
             const CachedNode* cached = loading_.cache().find({selectionIds_[cloudIndex], node});

@@ -31,10 +31,11 @@ struct SessionLimits {
     // What a frame may take while the camera moves (frame_time_controller.hpp); 0: as long as it takes.
     double frameMilliseconds = 0;
     std::uint64_t cacheBytes = 512ull << 20; // decoded nodes
-    int requestsInFlight = 6;                // a browser's connections to one host
-    std::uint64_t bytesInFlight = 8ull << 20;
-    std::uint64_t mergeGapBytes = 4096;            // ranges this near travel as one request
-    std::uint64_t mergedRequestBytes = 1ull << 20; // a merged request's largest size
+    // At most; what is right for the network within them is measured (load_limits.hpp).
+    int requestsInFlight = 6; // a browser's connections to one host
+    std::uint64_t bytesInFlight = 32ull << 20;
+    std::uint64_t mergeGapBytes = 256ull << 10;    // ranges this near travel as one request
+    std::uint64_t mergedRequestBytes = 4ull << 20; // a merged request's largest size
     Skips skips;
     LoadingTechniques techniques; // not part of the JSON
 };
@@ -51,6 +52,8 @@ struct CloudState {
     CloudStage stage = CloudStage::opening;
     Error error;                                   // failed: why
     std::shared_ptr<const CloudMetadata> metadata; // ready
+    // Ready, but its source fails: why nothing more is asked of it until ViewSession::retry().
+    std::optional<Error> interrupted;
     bool visible = true;
 };
 
@@ -89,8 +92,8 @@ class ViewSession {
     // again if anything changed. True: plan() is new and should be drawn. False: the last picture stands.
     virtual bool update(std::chrono::milliseconds wait = {}) = 0;
     virtual const FramePlan& plan() const = 0;
-    // Every cloud is open or failed, everything wanted is in plan() or failed for good, nothing is on its
-    // way.
+    // Every cloud is open or failed, everything wanted is in plan(), failed for good or belongs to a cloud
+    // that is interrupted, nothing is on its way.
     virtual bool settled() const = 0;
     virtual SessionCounters counters() const = 0;
 
@@ -106,6 +109,9 @@ class ViewSession {
     virtual std::vector<Error> recentErrors() const = 0;
     // Why something that is being tried again failed before; nothing if nothing is.
     virtual std::optional<Error> passingFailure() const = 0;
+    // Asks again for what networks and servers have failed to deliver: clouds that could not be opened or
+    // were interrupted, nodes that were given up. Camera, style and all that is here stay.
+    virtual void retry() = 0;
 };
 
 } // namespace stipple

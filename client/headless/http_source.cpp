@@ -48,6 +48,7 @@ struct Job {
     ByteRange range;
     ByteSource::Completion done;
     bool cancelled = false; // answered already; what still arrives for it is thrown away
+    ByteSource::Progress progress = {};
 };
 using JobPtr = std::shared_ptr<Job>;
 
@@ -140,6 +141,18 @@ class HttpSource final : public ByteSource {
         }
     }
 
+    bool forgetVersion() override {
+        version_ = options_.version;
+        return !version_.pinned;
+    }
+
+    Progress progress(RequestId id) const override {
+        for (const JobPtr& job : active_)
+            if (job->id == id && !job->cancelled)
+                return job->progress;
+        return {};
+    }
+
     int pump(std::chrono::milliseconds wait) override {
         auto until = Clock::now() + wait;
         context_.restart();
@@ -203,7 +216,7 @@ class HttpSource final : public ByteSource {
     // From the address to where it redirects, if it does. What is said to be moved for good is asked for
     // there at once from then on; what is elsewhere for now may be somewhere else the next time (RFC 9110
     // §15.4).
-    net::awaitable<Attempt> follow(Worker& worker, const Job& job) {
+    net::awaitable<Attempt> follow(Worker& worker, Job& job) {
         HttpUrl at = url_;
         bool isMoved = true;
         for (int hops = 0;; ++hops) {
@@ -233,7 +246,7 @@ class HttpSource final : public ByteSource {
         }
     }
 
-    net::awaitable<Attempt> fetch(Connection& connection, const HttpUrl& url, const Job& job) {
+    net::awaitable<Attempt> fetch(Connection& connection, const HttpUrl& url, Job& job) {
         if (!connection.isOpen) {
             Status connected = co_await connect(connection, url);
             if (!connected)
@@ -307,7 +320,7 @@ class HttpSource final : public ByteSource {
     // Sends the request and reads its answer; sets `isOpen` if the connection can be used again.
     template <class ByteStream>
     net::awaitable<Attempt> exchange(Connection& connection, ByteStream& stream, const HttpUrl& url,
-                                     const Job& job) {
+                                     Job& job) {
         http::request<http::empty_body> request = makeRequest(url, job.range);
         connection.stream.expires_after(options_.headerTimeout);
         if (auto [error, sent] = co_await http::async_write(stream, request, answered); error)
@@ -349,7 +362,8 @@ class HttpSource final : public ByteSource {
         parser.body_limit(bodyBytes);
 
         while (!parser.is_done()) {
-            std::uint64_t left = bodyBytes - std::min<std::uint64_t>(bodyBytes, parser.get().body().size());
+            job.progress = {true, std::min<std::uint64_t>(bodyBytes, parser.get().body().size())};
+            std::uint64_t left = bodyBytes - job.progress.bytes;
             if (job.cancelled && left > drainBytes)
                 co_return Attempt{cancelledError()};
             connection.stream.expires_after(options_.noProgressTimeout);

@@ -41,7 +41,7 @@ class BrowserSource : public ByteSource {
             arrived_.push_back({request, std::move(done), Bytes{}});
             return request;
         }
-        reads_.emplace(request, Read{range, std::move(done), {}});
+        reads_.emplace(request, Read{range, std::move(done), {}, false});
         owners().emplace(request, this);
         start(request, range);
         return request;
@@ -66,6 +66,12 @@ class BrowserSource : public ByteSource {
         return delivered;
     }
 
+    // The page puts a body down as a whole, so only its beginning is known.
+    Progress progress(RequestId id) const override {
+        auto read = reads_.find(static_cast<std::uint32_t>(id));
+        return {read != reads_.end() && read->second.hasBegun, 0};
+    }
+
     std::string name() const override { return name_; }
 
     virtual Result<std::uint64_t> accept(ByteRange asked, const RangeAnswer& answer) = 0;
@@ -79,6 +85,7 @@ class BrowserSource : public ByteSource {
             return -1;
         }
         read.body.resize(static_cast<std::size_t>(*judged));
+        read.hasBegun = true;
         return static_cast<double>(*judged);
     }
 
@@ -98,6 +105,7 @@ class BrowserSource : public ByteSource {
         ByteRange range;
         Completion done;
         Bytes body;
+        bool hasBegun = false;
     };
     virtual void start(std::uint32_t request, ByteRange range) = 0;
     void expectBody(std::uint32_t request, std::uint64_t size) {
@@ -146,6 +154,10 @@ class FetchSource final : public BrowserSource {
     std::uint64_t sizeBytes() const override { return version_.sizeBytes; }
 
   private:
+    bool forgetVersion() override {
+        version_ = {};
+        return true;
+    }
     void start(std::uint32_t request, ByteRange range) override {
         stippleHostFetch(request, name().c_str(), rangeField(range).c_str());
     }

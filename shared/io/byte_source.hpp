@@ -39,6 +39,18 @@ class ByteSource {
     // Takes a request back; its completion is called with `cancelled` unless it was answered already.
     virtual void cancel(RequestId) {}
 
+    // How far an open read is: whether its answer has begun, and how many of its bytes are here. Sources that
+    // can't tell, and reads that were answered, say nothing.
+    struct Progress {
+        bool hasBegun = false;
+        std::uint64_t bytes = 0;
+    };
+    virtual Progress progress(RequestId) const { return {}; }
+
+    // Whatever version of the file the next answer is of is the one to be read from now on. False: it is one
+    // version for good. No read is open.
+    virtual bool forgetVersion() { return false; }
+
     // Delivers completions that have arrived, waiting up to `wait` for the first. Returns the number
     // delivered. Sources that answer inside read(), or that a browser drives, have nothing to do here.
     virtual int pump(std::chrono::milliseconds wait) {

@@ -30,7 +30,8 @@ struct Options {
     std::vector<std::string> paths{"fly-over", "walk", "jump"};
     std::vector<std::string> ways{"all", "plain"};
     int frames = 3, connections = 6;
-    std::uint64_t budget = 1'000'000;
+    std::uint64_t budget = 2'000'000;
+    double spacing = 1;
     bool each = false;
 };
 
@@ -44,12 +45,12 @@ T need(Result<T> result) {
 }
 
 // Everything on; everything off; and everything on but one.
-std::vector<StreamingWay> allWays(std::uint64_t budget) {
+std::vector<StreamingWay> allWays(std::uint64_t budget, double spacing) {
     StreamingWay all{"all", {}, {}};
     all.limits.pointBudget = budget;
     all.limits.cacheBytes = 2ull << 30;
     all.detail.mode = DetailMode::continuous;
-    all.detail.spacingPixels = 1;
+    all.detail.spacingPixels = spacing;
     std::vector<StreamingWay> ways{all};
     auto without = [&](const char* name, const auto& change) {
         ways.push_back(all);
@@ -58,13 +59,15 @@ std::vector<StreamingWay> allWays(std::uint64_t budget) {
     };
     without("plain", [](StreamingWay& way) {
         way.detail.mode = DetailMode::discrete;
-        way.limits.techniques = {false, false};
+        way.limits.techniques = {false, false, false, false};
         way.limits.skips.unused = false;
     });
     without("levels", [](StreamingWay& way) { way.detail.mode = DetailMode::discrete; });
     without("whole nodes", [](StreamingWay& way) { way.limits.techniques.prefixes = false; });
     without("all attributes", [](StreamingWay& way) { way.limits.skips.unused = false; });
     without("no merging", [](StreamingWay& way) { way.limits.techniques.merging = false; });
+    without("no order by value", [](StreamingWay& way) { way.limits.techniques.byValue = false; });
+    without("fixed limits", [](StreamingWay& way) { way.limits.techniques.adaptive = false; });
     return ways;
 }
 
@@ -127,7 +130,7 @@ void measure(const std::string& path, const Options& options) {
     std::vector<StreamingScene> scenes = scenesOf(path, options);
     std::string cloud = path.substr(path.find_last_of('/') + 1);
     for (const std::string& network : options.networks)
-        for (const StreamingWay& way : allWays(options.budget)) {
+        for (const StreamingWay& way : allWays(options.budget, options.spacing)) {
             if (std::find(options.ways.begin(), options.ways.end(), way.name) == options.ways.end())
                 continue;
             std::optional<StreamingResult> sum;
@@ -160,6 +163,7 @@ int main(int argc, char** argv) {
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     program.add_option("--budget", options.budget, "Points")->capture_default_str();
+    program.add_option("--spacing", options.spacing, "Of continuous detail, pixels")->capture_default_str();
     program.add_option("--connections", options.connections, "Of the client to the server")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();

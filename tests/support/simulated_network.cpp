@@ -83,8 +83,9 @@ class SimulatedNetwork::Link {
         connect();
     }
 
-    double receivedBytes(const Request& request) const {
-        return std::max(0.0, request.arrived - options_.headerBytes);
+    ByteSource::Progress progress(const Request& request) const {
+        return {request.isFlowing && request.arrived > nothing,
+                static_cast<std::uint64_t>(std::max(0.0, request.arrived - options_.headerBytes))};
     }
 
   private:
@@ -311,6 +312,18 @@ class SimulatedNetwork::Source final : public ByteSource {
             done(std::move(result));
         }
         return delivered;
+    }
+
+    bool forgetVersion() override {
+        version_ = {};
+        return true;
+    }
+
+    Progress progress(RequestId id) const override {
+        for (const Open& one : open_)
+            if (one.request->id == id)
+                return link_->progress(*one.request);
+        return {};
     }
 
     std::uint64_t sizeBytes() const override { return version_.sizeBytes; }

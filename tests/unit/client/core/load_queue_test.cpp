@@ -136,7 +136,7 @@ TEST_CASE("a failure that may pass is tried four times with growing pauses, then
     for (int attempt = 1; attempt < LoadQueue::maxAttempts; ++attempt) {
         CHECK(loading.go(now).empty());
         CHECK(loading.script->reads.size() == static_cast<std::size_t>(attempt));
-        auto pause = LoadQueue::pauseAfter(attempt);
+        auto pause = loading.queue.pauseAfter(attempt);
         CHECK(loading.queue.nextRetry() == now + pause);
         REQUIRE(loading.queue.passingFailure());
         CHECK(loading.queue.passingFailure()->what == "down");
@@ -159,7 +159,7 @@ TEST_CASE("while something is tried again it is known why, and no longer once it
     CHECK(loading.go().empty());
     loading.script->failure = nullptr;
     loading.script->holdAnswers = true;
-    auto later = start + LoadQueue::pauseAfter(1);
+    auto later = start + loading.queue.pauseAfter(1);
     CHECK(loading.go(later).empty());
     REQUIRE(loading.queue.passingFailure()); // both are on their way
     CHECK(loading.queue.passingFailure()->what == "down");

@@ -1,0 +1,66 @@
+#include "client/core/byte_ranges.hpp"
+#include "client/core/kept_bytes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+#include <set>
+
+using namespace stipple;
+
+namespace {
+
+Bytes numbered(std::uint64_t offset, std::size_t size) {
+    Bytes bytes(size);
+    for (std::size_t i = 0; i < size; ++i)
+        bytes[i] = static_cast<std::uint8_t>(offset + i);
+    return bytes;
+}
+
+} // namespace
+
+TEST_CASE("kept bytes are found from where a range begins, over parts that touch") {
+    KeptBytes kept;
+    kept.add(1, 100, numbered(100, 50));
+    kept.add(1, 150, numbered(150, 10));
+    kept.add(1, 200, numbered(200, 10));
+    kept.add(2, 160, numbered(0, 40));
+    CHECK(kept.sizeBytes() == 110);
+    CHECK(kept.headBytes(1, {100, 200}) == 60);
+    CHECK(kept.headBytes(1, {120, 20}) == 20);
+    CHECK(kept.headBytes(1, {99, 20}) == 0);
+    CHECK(kept.headBytes(1, {160, 5}) == 0);
+    CHECK(kept.headBytes(3, {100, 5}) == 0);
+    Bytes bytes = numbered(110, 5);
+    kept.append(1, {115, 42}, bytes);
+    CHECK(bytes == numbered(110, 47));
+}
+
+TEST_CASE("the oldest kept bytes go first, and those of a cloud with it") {
+    KeptBytes kept;
+    for (std::uint64_t i = 0; i < 10; ++i)
+        kept.add(i % 2 ? 1 : 2, i * 100, Bytes(100));
+    kept.limit(450);
+    CHECK(kept.sizeBytes() == 400);
+    CHECK(kept.headBytes(2, {400, 100}) == 0);
+    CHECK(kept.headBytes(2, {600, 100}) == 100);
+    kept.eraseCloud(2);
+    CHECK(kept.sizeBytes() == 200);
+    kept.limit(0);
+    CHECK(kept.sizeBytes() == 0);
+}
+
+TEST_CASE("a set of ranges counts what it is given twice, as a set of bytes does") {
+    std::mt19937 random(3);
+    for (int round = 0; round < 50; ++round) {
+        ByteRanges ranges;
+        std::set<std::uint64_t> bytes;
+        for (int i = 0; i < 40; ++i) {
+            ByteRange range{random() % 500, random() % 60};
+            std::uint64_t common = 0;
+            for (std::uint64_t at = range.offset; at < range.end(); ++at)
+                common += !bytes.insert(at).second;
+            CHECK(ranges.add(range) == common);
+        }
+    }
+}
