@@ -1,8 +1,10 @@
 // stipple render FILE|URL -o OUT.png: one picture of one cloud, without a window.
 #include "client/core/json.hpp"
 #include "client/headless/http_source.hpp"
+#include "client/headless/http_url.hpp"
 #include "client/headless/picture.hpp"
 #include "client/headless/png.hpp"
+#include "client/headless/stored_source.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/number_check.hpp"
 #include "shared/cli/verb.hpp"
@@ -32,8 +34,23 @@ struct Options {
     double timeoutSeconds = 60;
     bool json = false;
     std::string pick; // "X,Y"
+    std::string cacheFolder;
+    std::uint64_t cacheFolderBytes = 4ull << 30;
     PictureRequest request;
+    std::shared_ptr<StoredSourceCounts> stored; // of cacheFolder
 };
+
+// With --cache what comes of an address is kept there, and what is kept does not come again.
+Result<std::unique_ptr<ByteSource>> openInput(Options& options) {
+    if (options.cacheFolder.empty())
+        return openSource(options.input);
+    if (!looksLikeUrl(options.input))
+        return Error{ErrorCode::invalidArgument, "only what comes from a server is kept", "--cache",
+                     "leave it out, or give an address"};
+    STIPPLE_TRY(store, RangeStore::open(options.cacheFolder, options.cacheFolderBytes));
+    options.stored = std::make_shared<StoredSourceCounts>();
+    return openStoredSource(options.input, store, options.stored);
+}
 
 // "1280x720".
 bool parseSize(const std::string& text, int& width, int& height) {
@@ -74,10 +91,10 @@ Result<PickRequest> pointerOf(const std::string& text) {
 }
 
 // Prints what is under the pointer as JSON: null if nothing is.
-Status pick(const Options& options) {
+Status pick(Options& options) {
     STIPPLE_TRY(request, requestOf(options));
     STIPPLE_TRY(pointer, pointerOf(options.pick));
-    STIPPLE_TRY(source, openSource(options.input));
+    STIPPLE_TRY(source, openInput(options));
     STIPPLE_TRY(session, PictureSession::open(std::move(source), request));
     STIPPLE_TRY(picked, session->pick(request, pointer));
     nlohmann::json answer;
@@ -91,14 +108,14 @@ Status pick(const Options& options) {
     return {};
 }
 
-Status render(const Options& options) {
+Status render(Options& options) {
     if (options.output.empty() == options.pick.empty())
         return Error{ErrorCode::invalidArgument, "either a picture or a point is asked for", "--output",
                      "give --output OUT.png, or --pick X,Y"};
     if (!options.pick.empty())
         return pick(options);
     STIPPLE_TRY(request, requestOf(options));
-    STIPPLE_TRY(source, openSource(options.input));
+    STIPPLE_TRY(source, openInput(options));
     // An output that can't be written is known before anything is loaded.
     STIPPLE_TRY(file, OutputFile::create(options.output));
     STIPPLE_TRY(picture, drawPicture(std::move(source), request));
@@ -121,6 +138,9 @@ Status render(const Options& options) {
             {"session", toJson(picture.session)},
             {"seconds",
              {{"open", picture.openSeconds}, {"load", picture.loadSeconds}, {"draw", picture.drawSeconds}}}};
+        if (options.stored)
+            answer["cache"] = {{"bytesFromDisk", options.stored->bytesFromDisk},
+                               {"readsFromDisk", options.stored->readsFromDisk}};
         std::printf("%s\n", jsonText(answer).c_str());
     } else {
         std::printf(
@@ -168,6 +188,11 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
         ->capture_default_str();
     verb->add_option("--timeout", options->timeoutSeconds, "Seconds for opening and loading")
         ->check(cli::number(0.001, 86400))
+        ->capture_default_str();
+    verb->add_option("--cache", options->cacheFolder,
+                     "Folder in which what comes of an address is kept for the next time (made if absent)");
+    verb->add_option("--cache-bytes", options->cacheFolderBytes, "At most in that folder")
+        ->check(cli::wholeNumber(1, std::uint64_t{1} << 50))
         ->capture_default_str();
     verb->add_flag("--json", options->json, "Print camera and counters as JSON");
     verb->callback([options, &action] {

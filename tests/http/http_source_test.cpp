@@ -2,8 +2,10 @@
 #include "client/headless/http_source.hpp"
 
 #include "client/headless/http_url.hpp"
+#include "client/headless/stored_source.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <arpa/inet.h>
 #include <atomic>
@@ -195,6 +197,104 @@ TEST_CASE("a connection that the server closed in between is opened again") {
     REQUIRE(readNow(*source, {0, 10}).ok());
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     CHECK(readNow(*source, {10, 10}).ok());
+}
+
+TEST_CASE("who may not read, and who is to come again later, is told so") {
+    CHECK(errorFrom("HTTP/1.1 401 Unauthorized\r\nContent-Length: 0\r\n\r\n") == ErrorCode::accessDenied);
+    CHECK(errorFrom("HTTP/1.1 403 Forbidden\r\nContent-Length: 0\r\n\r\n") == ErrorCode::accessDenied);
+    FixedServer busy("HTTP/1.1 503 Service Unavailable\r\nRetry-After: 7\r\nContent-Length: 0\r\n\r\n");
+    auto result = readNow(*open(busy.url()), {0, 10});
+    REQUIRE_FALSE(result.ok());
+    CHECK(result.error().code == ErrorCode::networkFailed);
+    CHECK(result.error().retryAfterSeconds == 7);
+}
+
+TEST_CASE("a read tells how far its answer has come") {
+    FixedServer stuck(
+        "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes 0-9/10\r\nContent-Length: 10\r\n\r\n0123",
+        false);
+    auto source = open(stuck.url());
+    auto id = source->read({0, 10}, [](Result<Bytes>) {});
+    CHECK_FALSE(source->progress(id).hasBegun);
+    for (int i = 0; i < 200 && source->progress(id).bytes < 4; ++i)
+        source->pump(std::chrono::milliseconds(10));
+    CHECK(source->progress(id).hasBegun);
+    CHECK(source->progress(id).bytes == 4);
+    source->cancel(id);
+    CHECK_FALSE(source->progress(id).hasBegun);
+}
+
+TEST_CASE("a source that forgets its version reads the file that is there now") {
+    TestServer server;
+    auto source = open(server.url("/clouds/town.stipple"));
+    REQUIRE(readNow(*source, {0, 64}).ok());
+    std::string fresh = server.folder().cloud().string() + ".new";
+    writeCloud(fresh, 20'001, 3);
+    auto size = fs::file_size(fresh);
+    fs::rename(fresh, server.folder().cloud());
+    CHECK(readNow(*source, {0, 64}).error().code == ErrorCode::changed);
+    REQUIRE(source->forgetVersion());
+    REQUIRE(readNow(*source, {0, 64}).ok());
+    CHECK(source->sizeBytes() == size);
+}
+
+TEST_CASE("what was stored of a version does not come from the server again") {
+    TestServer server;
+    TemporaryFolder folder;
+    std::string url = server.url("/pattern.bin");
+    auto counts = std::make_shared<StoredSourceCounts>();
+    auto opened = [&] {
+        auto store = RangeStore::open(folder.path(), 1 << 30);
+        REQUIRE(store.ok());
+        auto source = openStoredSource(url, *store, counts);
+        REQUIRE(source.ok());
+        return std::move(*source);
+    };
+    auto isRight = [](const Result<Bytes>& bytes, std::uint64_t offset) {
+        bool fine = bytes.ok();
+        for (std::size_t i = 0; fine && i < bytes->size(); ++i)
+            fine = static_cast<char>((*bytes)[i]) == patternByte(offset + i);
+        return fine;
+    };
+    {
+        auto source = opened();
+        CHECK(isRight(readNow(*source, {0, 100}), 0));
+        CHECK(isRight(readNow(*source, {100'000, 300'000}), 100'000));
+        CHECK(isRight(readNow(*source, {200'000, 1000}), 200'000));
+        CHECK(counts->bytesFromDisk == 1000);
+    }
+    std::size_t before = server.logOf(2).size();
+    CHECK(before == 2);
+    auto source = opened();
+    CHECK(isRight(readNow(*source, {0, 100}), 0)); // tells the version
+    CHECK(isRight(readNow(*source, {100'000, 300'000}), 100'000));
+    CHECK(isRight(readNow(*source, {50'000, 400'000}), 50'000)); // its ends are missing
+    auto log = server.logOf(4);
+    CHECK(log.size() == 4);
+}
+
+TEST_CASE("nothing of a version that was stored is given out for another one") {
+    TestServer server;
+    TemporaryFolder folder;
+    auto read = [&](ByteRange range) {
+        auto store = RangeStore::open(folder.path(), 1 << 30);
+        REQUIRE(store.ok());
+        auto source = openStoredSource(server.url("/clouds/town.stipple"), *store, nullptr);
+        REQUIRE(source.ok());
+        REQUIRE(readNow(**source, {0, 64}).ok());
+        auto bytes = readNow(**source, range);
+        REQUIRE(bytes.ok());
+        return *bytes;
+    };
+    ByteRange range{1000, 20'000};
+    Bytes old = read(range);
+    CHECK(read(range) == old);
+    std::string fresh = server.folder().cloud().string() + ".new";
+    writeCloud(fresh, 20'001, 3);
+    fs::rename(fresh, server.folder().cloud());
+    std::string file = readFile(server.folder().cloud());
+    CHECK(read(range) == Bytes(file.begin() + 1000, file.begin() + 21'000));
+    CHECK(read(range) != old);
 }
 
 TEST_CASE("a silent server is given up after the time limit") {
