@@ -250,19 +250,26 @@ nlohmann::json Viewer::pickedJson(const PickHit& hit, const PointRecord& record)
     return point;
 }
 
+std::variant<PickHit, std::string> Viewer::takeHit(const char* name) {
+    const std::string nothing = jsonText({{"pending", false}, {name, nullptr}});
+    if (!renderer_ || !renderer_->pickPending())
+        return nothing;
+    auto answer = renderer_->takePick();
+    if (!answer.ok())
+        return pickError(answer.error());
+    if (!*answer)
+        return jsonText({{"pending", true}});
+    if (!(*answer)->hit)
+        return nothing;
+    return *(*answer)->hit;
+}
+
 std::string Viewer::takePickJson() {
-    const nlohmann::json pending{{"pending", true}}, nothing{{"pending", false}, {"point", nullptr}};
     if (!picked_) {
-        if (!renderer_ || !renderer_->pickPending())
-            return jsonText(nothing);
-        auto answer = renderer_->takePick();
-        if (!answer.ok())
-            return pickError(answer.error());
-        if (!*answer)
-            return jsonText(pending);
-        if (!(*answer)->hit)
-            return jsonText(nothing);
-        picked_ = (*answer)->hit;
+        auto answer = takeHit("point");
+        if (auto* json = std::get_if<std::string>(&answer))
+            return *json;
+        picked_ = std::get<PickHit>(answer);
         session_->takePointAnswers(); // of questions that nobody waits for any more
         if (Status asked = session_->askPoint(identityOf(*picked_)); !asked.ok()) {
             picked_.reset();
@@ -276,7 +283,7 @@ std::string Viewer::takePickJson() {
                 return pickError(answer.record.error());
             return jsonText({{"pending", false}, {"point", pickedJson(hit, *answer.record)}});
         }
-    return jsonText(pending);
+    return jsonText({{"pending", true}});
 }
 
 std::string Viewer::measureJson(std::string_view request) {
@@ -308,23 +315,16 @@ std::string Viewer::projectJson(std::string_view positions) const {
 }
 
 std::string Viewer::takePlaceJson() {
-    const nlohmann::json pending{{"pending", true}}, nothing{{"pending", false}, {"place", nullptr}};
-    if (!renderer_ || !renderer_->pickPending())
-        return jsonText(nothing);
-    auto answer = renderer_->takePick();
-    if (!answer.ok())
-        return pickError(answer.error());
-    if (!*answer)
-        return jsonText(pending);
-    if (!(*answer)->hit)
-        return jsonText(nothing);
-    const PickHit& hit = *(*answer)->hit;
+    auto answer = takeHit("place");
+    if (auto* json = std::get_if<std::string>(&answer))
+        return *json;
+    const PickHit& hit = std::get<PickHit>(answer);
     for (const CloudState& cloud : session_->clouds())
         if (cloud.id == hit.cloud && cloud.metadata) {
             Vec3d place = positionRecord(*cloud.metadata, *hit.node, hit.point).position;
             return jsonText({{"pending", false}, {"place", {place.x, place.y, place.z}}});
         }
-    return jsonText(nothing);
+    return jsonText({{"pending", false}, {"place", nullptr}});
 }
 
 bool Viewer::settled() const {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 namespace stipple::web {
 
@@ -101,6 +102,9 @@ class Viewer {
 
   private:
     Viewer();
+    // What the picture answered to pick(): the hit, or the JSON that says that there is none (yet), `name`
+    // being what is null then.
+    std::variant<PickHit, std::string> takeHit(const char* name);
     nlohmann::json pickedJson(const PickHit& hit, const PointRecord& record) const;
     double aspect() const { return static_cast<double>(width_) / height_; }
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);

@@ -4,33 +4,21 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
-import { makeTown, scratchFolder, serve } from './support/program.mjs';
+import { keepScreenshot, settle } from './support/browser.mjs';
+import { minus, norm, openTownPage } from './support/town_page.mjs';
 
-let browser, folder, server, page, complaints;
+let town, page, complaints;
 
 before(async () => {
-    folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path));
-    browser = await launch();
-    ({ page, complaints } = await openPage(browser, { width: 1000, height: 640 }));
-    await page.goto(server.address);
-    await settleWithPoints(page);
-    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
-    await settle(page);
+    town = await openTownPage({ width: 1000, height: 640 });
+    ({ page, complaints } = town);
 });
 
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-    await folder?.cleanUp();
-});
+after(() => town?.close());
 
 const annotations = () => page.evaluate(() => window.stipple.annotations());
 const label = (title) => page.locator('stipple-annotation-overlay').getByRole('button', { name: title });
 const camera = () => page.evaluate(() => window.stipple.camera());
-const norm = (a) => Math.hypot(...a);
-const minus = (a, b) => a.map((value, axis) => value - b[axis]);
 
 async function put(x, y, title) {
     const count = (await annotations()).length;
@@ -112,7 +100,7 @@ describe('annotations', () => {
         const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save' }).click()]);
         const scene = JSON.parse(await readFile(await download.path(), 'utf8'));
         assert.deepEqual(scene.annotations, before);
-        const path = join(folder.path, 'scene.json');
+        const path = join(town.folder, 'scene.json');
         const load = async (value) => {
             await writeFile(path, JSON.stringify(value));
             await page.locator('stipple-scene input[type=file]').setInputFiles(path);

@@ -3,32 +3,19 @@ import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
 
 import { coverage } from './support/picture.mjs';
-import { keepScreenshot, launch, openPage, readPixels, settle, settleWithPoints } from './support/browser.mjs';
-import { makeTown, scratchFolder, serve } from './support/program.mjs';
+import { keepScreenshot, readPixels, settle } from './support/browser.mjs';
+import { dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
-let browser, folder, server, page, complaints;
+let town, page, complaints;
 
 before(async () => {
-    folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path));
-    browser = await launch();
-    ({ page, complaints } = await openPage(browser, { width: 1000, height: 640 }));
-    await page.goto(server.address);
-    await settleWithPoints(page);
-    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
-    await settle(page);
+    town = await openTownPage({ width: 1000, height: 640 });
+    ({ page, complaints } = town);
 });
 
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-    await folder?.cleanUp();
-});
+after(() => town?.close());
 
 const box = async () => (await page.evaluate(() => window.stipple.style())).clipBoxes[0];
-const minus = (a, b) => a.map((value, axis) => value - b[axis]);
-const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
-const norm = (a) => Math.hypot(...a);
 const close = (a, b, bound) => assert.ok(norm(minus(a, b)) <= bound, `${a} and ${b}`);
 const face = ({ centre, halfSize, axes }, axis, sign) =>
     centre.map((value, i) => value + sign * halfSize[axis] * axes[axis][i]);

@@ -4,8 +4,8 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, beforeEach, describe, test } from 'node:test';
 
-import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
-import { makeTown, scratchFolder, serve } from './support/program.mjs';
+import { keepScreenshot, settle } from './support/browser.mjs';
+import { cross, dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
 const places = [
     { x: 420, y: 210 },
@@ -14,24 +14,14 @@ const places = [
     { x: 560, y: 330 },
 ];
 
-let browser, folder, server, page, complaints;
+let town, page, complaints;
 
 before(async () => {
-    folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path));
-    browser = await launch();
-    ({ page, complaints } = await openPage(browser, { width: 900, height: 600 }));
-    await page.goto(server.address);
-    await settleWithPoints(page);
-    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
-    await settle(page);
+    town = await openTownPage({ width: 900, height: 600 });
+    ({ page, complaints } = town);
 });
 
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-    await folder?.cleanUp();
-});
+after(() => town?.close());
 
 const measurements = () => page.evaluate(() => window.stipple.measurements());
 const tool = (name) => page.getByRole('button', { name, exact: true });
@@ -58,10 +48,6 @@ function local({ points }) {
         integers.map((value, axis) => Number(BigInt(value) - BigInt(first.integers[axis])) * scale[axis]),
     );
 }
-const minus = (a, b) => a.map((value, axis) => value - b[axis]);
-const dot = (a, b) => a.reduce((sum, value, axis) => sum + value * b[axis], 0);
-const norm = (a) => Math.hypot(...a);
-const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
 const worst = {};
 
 function same(what, found, expected, bound = 1e-12) {

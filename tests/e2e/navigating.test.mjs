@@ -2,33 +2,21 @@
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, describe, test } from 'node:test';
 
-import { counters, keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
-import { makeTown, scratchFolder, serve } from './support/program.mjs';
+import { counters, keepScreenshot, settle } from './support/browser.mjs';
+import { minus, norm, openTownPage } from './support/town_page.mjs';
 
-let browser, folder, server, page, complaints, first;
+let town, page, complaints, first;
 
 before(async () => {
-    folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path));
-    browser = await launch();
-    ({ page, complaints } = await openPage(browser, { width: 900, height: 600 }));
-    await page.goto(server.address);
-    await settleWithPoints(page);
-    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
-    await settle(page);
+    town = await openTownPage({ width: 900, height: 600 });
+    ({ page, complaints } = town);
     first = await camera();
 });
 
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-    await folder?.cleanUp();
-});
+after(() => town?.close());
 
 const camera = () => page.evaluate(() => window.stipple.camera());
 const pick = (x, y) => page.evaluate(([a, b]) => window.stipple.pick(a, b), [x, y]);
-const minus = (a, b) => a.map((value, axis) => value - b[axis]);
-const norm = (a) => Math.hypot(...a);
 const mode = (name) => page.getByRole('radio', { name: `Move: ${name}` }).check({ force: true });
 
 /** Where a world point is in a picture of 900 × 600 pixels. */

@@ -4,20 +4,14 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
-import { makeTown, scratchFolder, serve } from './support/program.mjs';
+import { keepScreenshot } from './support/browser.mjs';
+import { openTownPage } from './support/town_page.mjs';
 
-let browser, folder, server, page, complaints, line;
+let town, page, complaints, line;
 
 before(async () => {
-    folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path));
-    browser = await launch();
-    ({ page, complaints } = await openPage(browser, { width: 1100, height: 720 }));
-    await page.goto(server.address);
-    await settleWithPoints(page);
-    await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
-    await settle(page);
+    town = await openTownPage({ width: 1100, height: 720 });
+    ({ page, complaints } = town);
     await page.getByRole('button', { name: 'Distance' }).click();
     for (const [i, place] of [{ x: 430, y: 300 }, { x: 620, y: 310 }, { x: 700, y: 400 }].entries()) {
         await page.locator('canvas').first().click({ position: place });
@@ -27,11 +21,7 @@ before(async () => {
     line = (await page.evaluate(() => window.stipple.measurements()))[0].points.map(({ position }) => position);
 });
 
-after(async () => {
-    await browser?.close();
-    await server?.stop();
-    await folder?.cleanUp();
-});
+after(() => town?.close());
 
 const panel = () => page.getByRole('complementary', { name: 'Profile' });
 const shownPoints = async () => Number(await panel().getByRole('status').getAttribute('data-points'));

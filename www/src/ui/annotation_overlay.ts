@@ -1,101 +1,93 @@
 import { css, html, type TemplateResult } from 'lit';
 
 import type { Annotation } from '../annotations/annotation.ts';
-import { ModelElement } from './model_element.ts';
+import { OverlayElement } from './overlay_element.ts';
 
 /** Labels of annotations over the picture; the one that is opened shows its text. Fainter behind something. */
-export class AnnotationOverlay extends ModelElement {
-    static override styles = css`
-        :host {
-            position: fixed;
-            inset: 0;
-            pointer-events: none;
-            overflow: hidden;
-            z-index: -1; /* under the panels */
-        }
-        .label {
-            position: absolute;
-            transform: translate(-50%, calc(-100% - 9px));
-            pointer-events: auto;
-            font: inherit;
-            font-size: 0.85rem;
-            color: var(--text);
-            background: var(--panel);
-            border: 1px solid var(--line);
-            border-radius: 999px;
-            padding: 0.15rem 0.7rem;
-            cursor: pointer;
-            max-width: 14rem;
-            overflow: hidden;
-            text-overflow: ellipsis;
-            white-space: nowrap;
-        }
-        .label.covered {
-            opacity: 0.35;
-        }
-        .label.aside {
-            pointer-events: none;
-        }
-        .label.open {
-            border-color: var(--accent);
-        }
-        .dot {
-            position: absolute;
-            width: 8px;
-            height: 8px;
-            border-radius: 50%;
-            background: var(--accent);
-            border: 1px solid var(--panel-solid);
-            transform: translate(-50%, -50%);
-        }
-        .text {
-            position: absolute;
-            transform: translate(-50%, 10px);
-            pointer-events: auto;
-            width: max-content;
-            max-width: 20rem;
-            max-height: 14rem;
-            overflow: auto;
-            background: var(--panel);
-            border: 1px solid var(--line);
-            border-radius: 10px;
-            padding: 0.5rem 0.8rem;
-            font-size: 0.85rem;
-            user-select: text;
-            overflow-wrap: anywhere;
-        }
-        .text > div > :first-child {
-            margin-top: 0;
-        }
-        .text > div > :last-child {
-            margin-bottom: 0;
-        }
-        .text a {
-            color: var(--accent);
-        }
-        .text img {
-            max-width: 100%;
-        }
-    `;
+export class AnnotationOverlay extends OverlayElement {
+    static override styles = [
+        OverlayElement.overlayStyles,
+        css`
+            .label {
+                position: absolute;
+                transform: translate(-50%, calc(-100% - 9px));
+                pointer-events: auto;
+                font: inherit;
+                font-size: 0.85rem;
+                color: var(--text);
+                background: var(--panel);
+                border: 1px solid var(--line);
+                border-radius: 999px;
+                padding: 0.15rem 0.7rem;
+                cursor: pointer;
+                max-width: 14rem;
+                overflow: hidden;
+                text-overflow: ellipsis;
+                white-space: nowrap;
+            }
+            .label.covered {
+                opacity: 0.35;
+            }
+            .label.aside {
+                pointer-events: none;
+            }
+            .label.open {
+                border-color: var(--accent);
+            }
+            .dot {
+                position: absolute;
+                width: 8px;
+                height: 8px;
+                border-radius: 50%;
+                background: var(--accent);
+                border: 1px solid var(--panel-solid);
+                transform: translate(-50%, -50%);
+            }
+            .text {
+                position: absolute;
+                transform: translate(-50%, 10px);
+                pointer-events: auto;
+                width: max-content;
+                max-width: 20rem;
+                max-height: 14rem;
+                overflow: auto;
+                background: var(--panel);
+                border: 1px solid var(--line);
+                border-radius: 10px;
+                padding: 0.5rem 0.8rem;
+                font-size: 0.85rem;
+                user-select: text;
+                overflow-wrap: anywhere;
+            }
+            .text > div > :first-child {
+                margin-top: 0;
+            }
+            .text > div > :last-child {
+                margin-bottom: 0;
+            }
+            .text a {
+                color: var(--accent);
+            }
+            .text img {
+                max-width: 100%;
+            }
+        `,
+    ];
 
-    private readonly follow = (): void => this.requestUpdate();
     private readonly rest = (): void => void this.model.annotations.look();
     /** Of the text that is open. */
     private rendered: { text: string; content: Element | string } = { text: '', content: '' };
 
     override connectedCallback(): void {
         super.connectedCallback();
-        this.model.annotations.addEventListener('change', this.follow);
-        this.model.measuring.addEventListener('change', this.follow);
-        this.model.addEventListener('frame', this.follow);
         this.model.addEventListener('rest', this.rest);
     }
     override disconnectedCallback(): void {
-        this.model.annotations.removeEventListener('change', this.follow);
-        this.model.measuring.removeEventListener('change', this.follow);
-        this.model.removeEventListener('frame', this.follow);
         this.model.removeEventListener('rest', this.rest);
         super.disconnectedCallback();
+    }
+    protected override sources(): EventTarget[] {
+        return [this.model.annotations, this.model.measuring];
     }
 
     override render(): TemplateResult | string {

@@ -3,58 +3,39 @@ import { css, html, svg, type SVGTemplateResult, type TemplateResult } from 'lit
 import { axesOf, cornersOf, edges, headingOf, placeIn, withCentre, withFaceMoved, withHeading } from '../clipping/boxes.ts';
 import { along, inPlane } from '../clipping/clipping.ts';
 import type { ClipBox, Vector } from '../wasm/values.ts';
-import { ModelElement } from './model_element.ts';
+import { OverlayElement } from './overlay_element.ts';
 
 type Place = { x: number; y: number };
 
 /** Clip boxes over the picture; the one that is edited has handles: a side each, the middle moves it, the knob turns it. */
-export class ClipOverlay extends ModelElement {
-    static override styles = css`
-        :host {
-            position: fixed;
-            inset: 0;
-            pointer-events: none;
-            overflow: hidden;
-            z-index: -1; /* under the panels */
-        }
-        svg {
-            width: 100%;
-            height: 100%;
-            display: block;
-        }
-        .edges {
-            fill: none;
-            stroke: #ffd479;
-            stroke-width: 1.5;
-            stroke-opacity: 0.55;
-        }
-        .selected .edges {
-            stroke-opacity: 1;
-        }
-        .handle {
-            fill: #ffd479;
-            stroke: rgb(0 0 0 / 0.6);
-            stroke-width: 1.5;
-            pointer-events: auto;
-            cursor: move;
-            touch-action: none;
-        }
-        .arm {
-            stroke: #ffd479;
-            stroke-dasharray: 3 3;
-        }
-    `;
+export class ClipOverlay extends OverlayElement {
+    static override styles = [
+        OverlayElement.overlayStyles,
+        css`
+            .edges {
+                fill: none;
+                stroke: #ffd479;
+                stroke-width: 1.5;
+                stroke-opacity: 0.55;
+            }
+            .selected .edges {
+                stroke-opacity: 1;
+            }
+            .handle {
+                fill: #ffd479;
+                stroke: rgb(0 0 0 / 0.6);
+                stroke-width: 1.5;
+                pointer-events: auto;
+                cursor: move;
+                touch-action: none;
+            }
+            .arm {
+                stroke: #ffd479;
+                stroke-dasharray: 3 3;
+            }
+        `,
+    ];
 
-    private readonly follow = (): void => this.requestUpdate();
-
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.model.addEventListener('frame', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.model.removeEventListener('frame', this.follow);
-        super.disconnectedCallback();
-    }
 
     override render(): TemplateResult | string {
         const { boxes } = this.model.clipping;

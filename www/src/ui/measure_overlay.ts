@@ -3,74 +3,57 @@ import { css, html, svg, type SVGTemplateResult, type TemplateResult } from 'lit
 import { kindOf, type Measurement } from '../measuring/measurement.ts';
 import { resultLines } from '../measuring/results.ts';
 import type { Vector } from '../wasm/values.ts';
-import { ModelElement } from './model_element.ts';
+import { OverlayElement } from './overlay_element.ts';
 
 type Place = { x: number; y: number };
 
 /** What was measured, over the picture: lines, handles that can be dragged to other points, values. */
-export class MeasureOverlay extends ModelElement {
-    static override styles = css`
-        :host {
-            position: fixed;
-            inset: 0;
-            pointer-events: none;
-            overflow: hidden;
-            z-index: -1; /* under the panels */
-        }
-        svg {
-            width: 100%;
-            height: 100%;
-            display: block;
-        }
-        .line {
-            fill: none;
-            stroke: var(--accent);
-            stroke-width: 2;
-            paint-order: stroke;
-        }
-        .under {
-            fill: none;
-            stroke: rgb(0 0 0 / 0.55);
-            stroke-width: 4;
-        }
-        .inside {
-            fill: var(--accent);
-            fill-opacity: 0.14;
-            stroke: none;
-        }
-        .handle {
-            fill: var(--panel-solid);
-            stroke: var(--accent);
-            stroke-width: 2;
-            pointer-events: auto;
-            cursor: move;
-            touch-action: none;
-        }
-        .drawing .handle {
-            pointer-events: none;
-        }
-        text {
-            font: 600 13px system-ui, sans-serif;
-            fill: #fff;
-            stroke: rgb(0 0 0 / 0.75);
-            stroke-width: 4;
-            paint-order: stroke;
-            text-anchor: middle;
-        }
-    `;
+export class MeasureOverlay extends OverlayElement {
+    static override styles = [
+        OverlayElement.overlayStyles,
+        css`
+            .line {
+                fill: none;
+                stroke: var(--accent);
+                stroke-width: 2;
+                paint-order: stroke;
+            }
+            .under {
+                fill: none;
+                stroke: rgb(0 0 0 / 0.55);
+                stroke-width: 4;
+            }
+            .inside {
+                fill: var(--accent);
+                fill-opacity: 0.14;
+                stroke: none;
+            }
+            .handle {
+                fill: var(--panel-solid);
+                stroke: var(--accent);
+                stroke-width: 2;
+                pointer-events: auto;
+                cursor: move;
+                touch-action: none;
+            }
+            .drawing .handle {
+                pointer-events: none;
+            }
+            text {
+                font: 600 13px system-ui, sans-serif;
+                fill: #fff;
+                stroke: rgb(0 0 0 / 0.75);
+                stroke-width: 4;
+                paint-order: stroke;
+                text-anchor: middle;
+            }
+        `,
+    ];
 
-    private readonly follow = (): void => this.requestUpdate();
     private dragging = false;
 
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.model.measuring.addEventListener('change', this.follow);
-        this.model.addEventListener('frame', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.model.measuring.removeEventListener('change', this.follow);
-        this.model.removeEventListener('frame', this.follow);
-        super.disconnectedCallback();
+    protected override sources(): EventTarget[] {
+        return [this.model.measuring];
     }
 
     override render(): TemplateResult | string {

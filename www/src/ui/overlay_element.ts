@@ -1,0 +1,38 @@
+import { css, type CSSResult } from 'lit';
+
+import { ModelElement } from './model_element.ts';
+
+/** Something that lies over the picture, under the panels, and follows the camera. Clicks go through it, but where it says otherwise. */
+export abstract class OverlayElement extends ModelElement {
+    static overlayStyles: CSSResult = css`
+        :host {
+            position: fixed;
+            inset: 0;
+            pointer-events: none;
+            overflow: hidden;
+            z-index: -1;
+        }
+        svg {
+            width: 100%;
+            height: 100%;
+            display: block;
+        }
+    `;
+
+    protected readonly follow = (): void => this.requestUpdate();
+    /** What it shows beside the picture's frames: each tells of its changes by 'change'. */
+    protected sources(): EventTarget[] {
+        return [];
+    }
+
+    override connectedCallback(): void {
+        super.connectedCallback();
+        this.model.addEventListener('frame', this.follow);
+        for (const source of this.sources()) source.addEventListener('change', this.follow);
+    }
+    override disconnectedCallback(): void {
+        this.model.removeEventListener('frame', this.follow);
+        for (const source of this.sources()) source.removeEventListener('change', this.follow);
+        super.disconnectedCallback();
+    }
+}
