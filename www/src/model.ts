@@ -196,12 +196,16 @@ export class Model extends EventTarget {
 
     // Flights
 
+    isFlying = false;
+
     /** To where the point is in the middle, at a part of the distance. */
     flyToPoint(point: Vector, part: number): Promise<void> {
+        this.rememberNow();
         return this.fly(this.viewer.flyToPoint(point, part));
     }
     /** To where all of the cloud shows; of all clouds without an id. */
     flyToCloud(id = 0): Promise<void> {
+        this.rememberNow();
         return this.fly(this.viewer.flyToCloud(id));
     }
     flyToCamera(camera: object): Promise<void> {
@@ -213,11 +217,13 @@ export class Model extends EventTarget {
         if (length === 0) return;
         const start = performance.now();
         const duration = matchMedia('(prefers-reduced-motion: reduce)').matches ? 0 : flightMs;
+        this.isFlying = true;
         for (let t = 0, goesOn = true; goesOn && t < 1;) {
             const now = await new Promise<number>((resolve) => requestAnimationFrame(resolve));
             t = duration === 0 ? 1 : Math.min(1, Math.max(0, now - start) / duration);
             this.step(() => (goesOn = this.viewer.fly(t)));
         }
+        this.isFlying = false;
     }
 
     // Scenes
@@ -484,6 +490,11 @@ export class Model extends EventTarget {
         change();
         this.wake();
         this.rememberSoon();
+    }
+
+    /** Where one was before a flight can be gone back to, however short one was there. */
+    private rememberNow(): void {
+        if (!this.isFlying) this.navigator.history.rest(this.viewer.camera());
     }
 
     /** Once the camera has rested for a while, it can be gone back to. */

@@ -91,6 +91,7 @@ export class Navigator {
     }
 
     back(): void {
+        if (!this.model.isFlying) this.history.rest(this.model.readCamera());
         const camera = this.history.back();
         if (camera) void this.model.flyToCamera(camera);
     }
