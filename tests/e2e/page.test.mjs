@@ -105,7 +105,7 @@ describe('opening', () => {
     test('a file that is chosen with the button opens', async () => {
         const { page } = await openPage(browser);
         await page.goto(`${server.address}?cloud=`);
-        await page.locator('input[type=file]').setInputFiles(town);
+        await page.locator('stipple-clouds input[type=file]').setInputFiles(town);
         const { frame } = await settleWithPoints(page);
         assert.ok(frame.pointsDrawn > 10_000);
         await page.close();
@@ -572,9 +572,16 @@ describe('what goes wrong is said in words', () => {
         await page.goto(own.address);
         await page.waitForFunction(() => window.stipple?.counters().frame.nodesKnown > 0);
         await page.evaluate(() => window.stipple.settled());
+        const camera = await page.evaluate(() => window.stipple.camera());
+        await page.getByText('150,000 points').waitFor();
         await rename(other, replaced);
         await page.evaluate(() => window.stipple.setLimits({ pointBudget: 1_000_000 }));
-        await page.getByText(/the file was replaced while it was being read/).first().waitFor();
+        // It is opened anew, once, and looked at from where one was.
+        await page.getByText('70,000 points').first().waitFor();
+        const { frame } = await settleWithPoints(page);
+        assert.ok(frame.complete);
+        assert.equal(await page.getByText('150,000 points').count(), 0);
+        assert.deepEqual(await page.evaluate(() => window.stipple.camera()), camera);
         await keepScreenshot(page, 'replaced');
         await page.close();
         await own.stop();
