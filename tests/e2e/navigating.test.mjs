@@ -108,6 +108,29 @@ describe('moving about', () => {
         await keepScreenshot(page, 'navigated');
     });
 
+    test('a flight that begins while another is under way takes its place, and goes its whole way', async () => {
+        const ended = await page.evaluate(async () => {
+            const frame = () => new Promise(requestAnimationFrame);
+            const canvas = document.querySelector('canvas');
+            const press = (key) => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
+            window.stipple.setCamera({ target: window.stipple.camera().position.map((v, i) => v + [30, 30, -40][i]) });
+            press('f');
+            const start = performance.now();
+            while (performance.now() - start < 600) await frame();
+            press('f'); // 200 ms before the first would have ended
+            let changed = 0, last = JSON.stringify(window.stipple.camera());
+            const second = performance.now();
+            for (;;) {
+                await frame();
+                const now = JSON.stringify(window.stipple.camera());
+                if (now !== last) changed = performance.now() - second;
+                last = now;
+                if (performance.now() - second > 1500) return changed;
+            }
+        });
+        assert.ok(ended > 600, `it ended after ${ended} ms`);
+    });
+
     test('one walks while a key is held, looks around by dragging, and rests when it is let go', async () => {
         await mode('Fly');
         await page.mouse.move(480, 300);

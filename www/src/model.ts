@@ -197,6 +197,7 @@ export class Model extends EventTarget {
     // Flights
 
     isFlying = false;
+    private lastFlight = 0;
 
     /** To where the point is in the middle, at a part of the distance. */
     flyToPoint(point: Vector, part: number): Promise<void> {
@@ -217,9 +218,11 @@ export class Model extends EventTarget {
         if (length === 0) return;
         const start = performance.now();
         const duration = matchMedia('(prefers-reduced-motion: reduce)').matches ? 0 : flightMs;
+        const flight = ++this.lastFlight; // a later one takes its place
         this.isFlying = true;
         for (let t = 0, goesOn = true; goesOn && t < 1;) {
             const now = await new Promise<number>((resolve) => requestAnimationFrame(resolve));
+            if (flight !== this.lastFlight) return;
             t = duration === 0 ? 1 : Math.min(1, Math.max(0, now - start) / duration);
             this.step(() => (goesOn = this.viewer.fly(t)));
         }
