@@ -139,25 +139,13 @@ export class ClipOverlay extends OverlayElement {
         index: number,
         move: (event: PointerEvent, box: ClipBox, step: Place) => ClipBox | undefined,
     ): void {
-        event.preventDefault();
-        event.stopPropagation();
-        const handle = event.currentTarget as Element;
         let last = { x: event.clientX, y: event.clientY };
-        const follow = (moved: PointerEvent): void => {
+        this.followPointer(event, (moved) => {
             const box = this.model.clipping.boxes[index];
             const next = box && move(moved, box, { x: moved.clientX - last.x, y: moved.clientY - last.y });
             last = { x: moved.clientX, y: moved.clientY };
             if (next) this.model.clipping.change(index, next);
-        };
-        const drop = (): void => {
-            handle.removeEventListener('pointermove', follow as EventListener);
-            handle.removeEventListener('pointerup', drop);
-            handle.removeEventListener('pointercancel', drop);
-        };
-        handle.setPointerCapture(event.pointerId);
-        handle.addEventListener('pointermove', follow as EventListener);
-        handle.addEventListener('pointerup', drop);
-        handle.addEventListener('pointercancel', drop);
+        });
     }
 }
 

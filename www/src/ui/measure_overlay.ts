@@ -96,9 +96,6 @@ export class MeasureOverlay extends OverlayElement {
 
     /** The handle follows the pointer from point to point; one question at a time, the last place counts. */
     private drag(event: PointerEvent, item: Measurement, index: number): void {
-        event.preventDefault();
-        event.stopPropagation();
-        const handle = event.currentTarget as Element;
         const box = this.model.canvas.getBoundingClientRect();
         let wanted: Place | undefined;
         const ask = async (): Promise<void> => {
@@ -111,19 +108,10 @@ export class MeasureOverlay extends OverlayElement {
             }
             this.dragging = false;
         };
-        const move = (moved: PointerEvent): void => {
+        this.followPointer(event, (moved) => {
             wanted = { x: moved.clientX - box.left, y: moved.clientY - box.top };
             void ask();
-        };
-        const drop = (): void => {
-            handle.removeEventListener('pointermove', move as EventListener);
-            handle.removeEventListener('pointerup', drop);
-            handle.removeEventListener('pointercancel', drop);
-        };
-        handle.setPointerCapture(event.pointerId);
-        handle.addEventListener('pointermove', move as EventListener);
-        handle.addEventListener('pointerup', drop);
-        handle.addEventListener('pointercancel', drop);
+        });
     }
 }
 

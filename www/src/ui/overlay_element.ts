@@ -35,4 +35,20 @@ export abstract class OverlayElement extends ModelElement {
         for (const source of this.sources()) source.removeEventListener('change', this.follow);
         super.disconnectedCallback();
     }
+
+    /** Calls `follow` as the pointer goes on that went down on a handle, until it is lifted. */
+    protected followPointer(event: PointerEvent, follow: (moved: PointerEvent) => void): void {
+        event.preventDefault();
+        event.stopPropagation();
+        const handle = event.currentTarget as Element;
+        const drop = (): void => {
+            handle.removeEventListener('pointermove', follow as EventListener);
+            handle.removeEventListener('pointerup', drop);
+            handle.removeEventListener('pointercancel', drop);
+        };
+        handle.setPointerCapture(event.pointerId);
+        handle.addEventListener('pointermove', follow as EventListener);
+        handle.addEventListener('pointerup', drop);
+        handle.addEventListener('pointercancel', drop);
+    }
 }
