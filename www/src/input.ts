@@ -15,7 +15,7 @@ const clickSlop = 3;
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     const { annotations, measuring, navigator } = model;
     const putAnnotation = async (x: number, y: number): Promise<void> => {
-        const place = await model.place(x, y);
+        const place = await model.picking.place(x, y);
         if (place) annotations.add(place);
     };
     const fingers = new Map<number, { x: number; y: number }>();
@@ -50,8 +50,8 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             const before = pinch();
             fingers.set(event.pointerId, to);
             const after = pinch();
-            model.pan(after.x - before.x, after.y - before.y);
-            if (before.spread > 0 && after.spread > 0) model.zoom(before.spread / after.spread, after.x, after.y);
+            model.camera.pan(after.x - before.x, after.y - before.y);
+            if (before.spread > 0 && after.spread > 0) model.camera.zoom(before.spread / after.spread, after.x, after.y);
             return;
         }
         fingers.set(event.pointerId, to);
@@ -65,7 +65,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         lift(event);
         if (pressed && measuring.isDrawing) void measuring.click(pressed.x, pressed.y);
         else if (pressed && annotations.isPlacing) void putAnnotation(pressed.x, pressed.y);
-        else if (pressed) void model.showPoint(pressed.x, pressed.y);
+        else if (pressed) void model.picking.show(pressed.x, pressed.y);
         pressed = undefined;
     });
     canvas.addEventListener('pointercancel', lift);
@@ -92,28 +92,28 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         if (navigator.keyDown(event.key)) return event.preventDefault();
         const middle = { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
         const move = event.shiftKey
-            ? (dx: number, dy: number) => model.pan(dx, dy)
-            : (dx: number, dy: number) => model.orbit(dx, dy);
+            ? (dx: number, dy: number) => model.camera.pan(dx, dy)
+            : (dx: number, dy: number) => model.camera.orbit(dx, dy);
         const actions: Record<string, () => void> = {
             ArrowLeft: () => move(keyStep, 0),
             ArrowRight: () => move(-keyStep, 0),
             ArrowUp: () => move(0, keyStep),
             ArrowDown: () => move(0, -keyStep),
-            '+': () => model.zoom(keyZoom, middle.x, middle.y),
-            '=': () => model.zoom(keyZoom, middle.x, middle.y),
-            '-': () => model.zoom(1 / keyZoom, middle.x, middle.y),
-            '1': () => model.showView('top'),
-            '2': () => model.showView('front'),
-            '3': () => model.showView('iso'),
-            '4': () => model.showView('side'),
-            Home: () => model.showView('iso'),
-            f: () => void model.flyToCloud(),
-            u: () => navigator.back(),
-            U: () => navigator.forward(),
+            '+': () => model.camera.zoom(keyZoom, middle.x, middle.y),
+            '=': () => model.camera.zoom(keyZoom, middle.x, middle.y),
+            '-': () => model.camera.zoom(1 / keyZoom, middle.x, middle.y),
+            '1': () => model.camera.showView('top'),
+            '2': () => model.camera.showView('front'),
+            '3': () => model.camera.showView('iso'),
+            '4': () => model.camera.showView('side'),
+            Home: () => model.camera.showView('iso'),
+            f: () => void model.camera.flyToCloud(),
+            u: () => model.camera.back(),
+            U: () => model.camera.forward(),
             Escape: () => {
                 if (measuring.isDrawing) measuring.stop();
                 else if (annotations.isPlacing) annotations.place();
-                else model.forgetPoint();
+                else model.picking.forget();
             },
             ...(measuring.isDrawing && {
                 Enter: () => measuring.finish(),
@@ -150,7 +150,7 @@ export function followDrops(model: Model, hover: (isOver: boolean) => void): voi
         depth = 0;
         hover(false);
         for (const file of event.dataTransfer!.files)
-            if (/\.json$/i.test(file.name)) void model.openSceneFile(file);
+            if (/\.json$/i.test(file.name)) void model.scenes.openFile(file);
             else model.openFile(file);
     });
 }

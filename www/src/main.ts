@@ -38,7 +38,7 @@ async function start(): Promise<void> {
 async function openLinkedScene(model: Model): Promise<boolean> {
     if (!isSceneFragment(location.hash)) return false;
     try {
-        model.openScene(await fromFragment(location.hash));
+        model.scenes.open(await fromFragment(location.hash));
         return true;
     } catch (error) {
         model.notify(messageOf(error));

@@ -34,18 +34,18 @@ declare global {
 
 export function installTestHook(model: Model): void {
     window.stipple = {
-        settled: () => model.settled(),
+        settled: () => model.frames.settled(),
         counters: () => model.readCounters(),
-        setCamera: (camera) => model.changeCamera(camera),
-        camera: () => model.readCamera(),
+        setCamera: (camera) => model.camera.change(camera),
+        camera: () => model.camera.read(),
         setStyle: (style) => model.changeStyle(style),
         style: () => model.style,
         setLimits: (limits) => model.changeLimits(limits),
-        pick: (x, y, radius) => model.pick(x, y, radius),
+        pick: (x, y, radius) => model.picking.pick(x, y, radius),
         annotations: () => model.annotations.items,
         measurements: () => model.measuring.items,
         readPixels: () => {
-            const { width, height, rgba } = model.readPixels();
+            const { width, height, rgba } = model.surface.readPixels();
             let binary = '';
             for (let at = 0; at < rgba.length; at += 0x8000)
                 binary += String.fromCharCode(...rgba.subarray(at, at + 0x8000));

@@ -78,15 +78,15 @@ export class Annotations extends EventTarget {
 
     /** Keeps the present view as the annotation's. */
     keepView(id: number): void {
-        this.change(id, { camera: this.model.readCamera() });
+        this.change(id, { camera: this.model.camera.read() });
     }
     async flyTo(id: number): Promise<void> {
         const item = this.find(id);
         if (!item) return;
         this.opened = id;
         this.changed();
-        if (item.camera) await this.model.flyToCamera(item.camera);
-        else await this.model.flyToPoint(item.position, nearPart);
+        if (item.camera) await this.model.camera.flyToCamera(item.camera);
+        else await this.model.camera.flyToPoint(item.position, nearPart);
     }
 
     /** Neither hidden, with one that is, nor too far away. */
@@ -108,10 +108,10 @@ export class Annotations extends EventTarget {
     }
 
     private async lookAt(item: Annotation): Promise<void> {
-        const [at] = this.model.project([item.position]);
+        const [at] = this.model.surface.project([item.position]);
         const { clientWidth, clientHeight } = this.model.canvas;
         if (!at || at.x < 0 || at.y < 0 || at.x >= clientWidth || at.y >= clientHeight) return;
-        const place = await this.model.placeAside(at.x, at.y);
+        const place = await this.model.picking.placeAside(at.x, at.y);
         if (place === undefined) return;
         const isCovered = place !== null && this.distanceTo(place) < coveredPart * this.distanceTo(item.position);
         if (isCovered === this.covered.has(item.id)) return;
@@ -121,7 +121,7 @@ export class Annotations extends EventTarget {
     }
 
     private distanceTo(position: Vector): number {
-        const camera = this.model.readCamera();
+        const camera = this.model.camera.read();
         return Math.hypot(...position.map((value, axis) => value - camera.position[axis]!));
     }
     private isWithin(id: number, ancestor: number): boolean {

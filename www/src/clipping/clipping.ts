@@ -16,8 +16,8 @@ export class Clipping {
     /** A box around the point in the middle of the picture, or what the camera turns about; a third as high as the view there. */
     async add(): Promise<void> {
         const { canvas } = this.model;
-        const middle = await this.model.place(canvas.clientWidth / 2, canvas.clientHeight / 2, 60);
-        const { target, position, projection, orthoHeight, fovYDegrees } = this.model.readCamera();
+        const middle = await this.model.picking.place(canvas.clientWidth / 2, canvas.clientHeight / 2, 60);
+        const { target, position, projection, orthoHeight, fovYDegrees } = this.model.camera.read();
         const centre = middle ?? target;
         const distance = Math.hypot(...centre.map((value, axis) => value - position[axis]!));
         const height =

@@ -115,7 +115,7 @@ export class Measuring extends EventTarget {
 
     private async pick(x: number, y: number): Promise<PlacedPoint | null> {
         try {
-            return await this.model.pick(x, y);
+            return await this.model.picking.pick(x, y);
         } catch (error) {
             this.model.notify(messageOf(error));
             return null;

@@ -1,7 +1,6 @@
 import { messageOf } from '../messages.ts';
 import type { Model } from '../model.ts';
 import type { Vector } from '../wasm/values.ts';
-import { CameraHistory } from './camera_history.ts';
 
 /**
  * orbit: drag turns around the middle. earth: drag moves the ground with the pointer, right drag turns around the place
@@ -25,7 +24,6 @@ const walkPart = 0.5;
 /** Turns what pointers, wheels and keys do into steps of the camera. Places are CSS pixels of the canvas. */
 export class Navigator {
     mode: NavigationMode = 'orbit';
-    readonly history = new CameraHistory();
 
     /** What is under the pointer since it went down; undefined: not known yet, null: nothing. */
     private grabbed: Vector | null | undefined;
@@ -49,17 +47,17 @@ export class Navigator {
     drag(from: Place, to: Place, other: boolean): void {
         const { model } = this;
         const dx = to.x - from.x, dy = to.y - from.y;
-        if (this.mode === 'fly' && !other) model.lookAround(dx, dy);
-        else if (this.mode === 'orbit' && !other) model.orbit(dx, dy);
+        if (this.mode === 'fly' && !other) model.camera.lookAround(dx, dy);
+        else if (this.mode === 'orbit' && !other) model.camera.orbit(dx, dy);
         else if (this.mode === 'earth' && other) this.turn(dx, dy);
-        else if (this.grabbed === null || (this.grabbed === undefined && this.mode !== 'earth')) model.pan(dx, dy);
-        else if (this.grabbed && this.mode === 'earth') model.dragGround(this.grabbed, to.x, to.y);
-        else if (this.grabbed) model.dragAtDepth(this.grabbed, to.x, to.y);
+        else if (this.grabbed === null || (this.grabbed === undefined && this.mode !== 'earth')) model.camera.pan(dx, dy);
+        else if (this.grabbed && this.mode === 'earth') model.camera.dragGround(this.grabbed, to.x, to.y);
+        else if (this.grabbed) model.camera.dragAtDepth(this.grabbed, to.x, to.y);
     }
 
     private turn(dx: number, dy: number): void {
-        if (this.grabbed) this.model.orbitAbout(this.grabbed, dx, dy);
-        else if (this.grabbed === null) this.model.orbit(dx, dy);
+        if (this.grabbed) this.model.camera.orbitAbout(this.grabbed, dx, dy);
+        else if (this.grabbed === null) this.model.camera.orbit(dx, dy);
     }
 
     hover(at: Place): void {
@@ -79,25 +77,15 @@ export class Navigator {
             this.wheelPoint = undefined;
             void this.ask(at, (place) => (this.wheelPoint = place));
         }
-        if (this.wheelPoint) model.zoomToPoint(this.wheelPoint, factor);
-        else model.zoom(factor, at.x, at.y);
+        if (this.wheelPoint) model.camera.zoomToPoint(this.wheelPoint, factor);
+        else model.camera.zoom(factor, at.x, at.y);
     }
 
     /** Flies to the point shown there; stays where there is none. */
     async flyTo(at: Place): Promise<void> {
         await this.ask(at, (place) => {
-            if (place) void this.model.flyToPoint(place, nearPart);
+            if (place) void this.model.camera.flyToPoint(place, nearPart);
         });
-    }
-
-    back(): void {
-        if (!this.model.isFlying) this.history.rest(this.model.readCamera());
-        const camera = this.history.back();
-        if (camera) void this.model.flyToCamera(camera);
-    }
-    forward(): void {
-        const camera = this.history.forward();
-        if (camera) void this.model.flyToCamera(camera);
     }
 
     /** True if the key walks. */
@@ -130,23 +118,23 @@ export class Navigator {
             const way = seconds * walkPart * this.walkSpeed * (this.walkDepth ?? this.depthOfTarget());
             const along = (plus: string, minus: string): number =>
                 (Number(this.keys.has(plus)) - Number(this.keys.has(minus))) * way;
-            this.model.walk(along('w', 's'), along('d', 'a'), along('e', 'q'), false);
+            this.model.camera.walk(along('w', 's'), along('d', 'a'), along('e', 'q'), false);
         }
         this.isWalking = false;
         this.walkDepth = undefined;
     }
 
     private depthOf(place: Vector): number {
-        const { position } = this.model.readCamera();
+        const { position } = this.model.camera.read();
         return Math.hypot(...place.map((value, axis) => value - position[axis]!));
     }
     private depthOfTarget(): number {
-        return this.depthOf(this.model.readCamera().target);
+        return this.depthOf(this.model.camera.read().target);
     }
 
     private async ask({ x, y }: Place, use: (place: Vector | null) => void): Promise<void> {
         try {
-            use(await this.model.place(x, y));
+            use(await this.model.picking.place(x, y));
         } catch (error) {
             this.model.notify(messageOf(error));
         }

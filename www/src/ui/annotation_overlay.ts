@@ -94,7 +94,7 @@ export class AnnotationOverlay extends OverlayElement {
         const { annotations } = this.model;
         const shown = annotations.items.filter((item) => annotations.isShown(item));
         if (shown.length === 0) return '';
-        const places = this.model.project(shown.map((item) => item.position));
+        const places = this.model.surface.project(shown.map((item) => item.position));
         return html`${shown.map((item, i) => (places[i] ? this.renderItem(item, places[i]) : ''))}`;
     }
 

@@ -252,7 +252,7 @@ export class App extends ModelElement {
                       <stipple-counters .model=${this.model}></stipple-counters>
                   </aside>`
                 : ''}
-            ${this.model.picked
+            ${this.model.picking.point
                 ? html`<aside class="panel point" aria-label="Point" aria-live="polite">
                       <stipple-point .model=${this.model}></stipple-point>
                   </aside>`

@@ -45,7 +45,7 @@ export class ClipOverlay extends OverlayElement {
 
     private renderBox(box: ClipBox, index: number): SVGTemplateResult {
         const isSelected = this.model.clipping.selected === index;
-        const corners = this.model.project(cornersOf(box));
+        const corners = this.model.surface.project(cornersOf(box));
         const line = edges
             .map(([a, b]) => [corners[a], corners[b]])
             .map(([a, b]) => (a && b ? `M${a.x} ${a.y}L${b.x} ${b.y}` : ''))
@@ -61,7 +61,7 @@ export class ClipOverlay extends OverlayElement {
             [1, -1].map((sign) => ({ axis, sign, place: placeIn(box, faceOf(box, axis, sign)) })),
         );
         const knob = placeIn(box, [1.4 * box.halfSize[0], 0, 0]);
-        const shown = this.model.project([...faces.map(({ place }) => place), box.centre, knob]);
+        const shown = this.model.surface.project([...faces.map(({ place }) => place), box.centre, knob]);
         const centre = shown[6], turner = headingOf(box) === undefined ? null : shown[7];
         const drag = (move: (event: PointerEvent, box: ClipBox, step: Place) => ClipBox | undefined) =>
             (event: PointerEvent): void => this.drag(event, index, move);
@@ -97,7 +97,7 @@ export class ClipOverlay extends OverlayElement {
     private pixelsAlong(box: ClipBox, from: Vector, axis: number, sign: number): Place {
         const unit = 0.05 * box.halfSize[axis]!;
         const to = from.map((value, at) => (at === axis ? value + sign * unit : value)) as Vector;
-        const [a, b] = this.model.project([placeIn(box, from), placeIn(box, to)]);
+        const [a, b] = this.model.surface.project([placeIn(box, from), placeIn(box, to)]);
         return a && b ? { x: (b.x - a.x) / unit, y: (b.y - a.y) / unit } : { x: 0, y: 0 };
     }
 
@@ -123,7 +123,7 @@ export class ClipOverlay extends OverlayElement {
     /** The knob comes to lie in the direction of the pointer. */
     private turned(event: PointerEvent, box: ClipBox): ClipBox | undefined {
         const area = this.model.canvas.getBoundingClientRect();
-        const [centre] = this.model.project([box.centre]);
+        const [centre] = this.model.surface.project([box.centre]);
         if (!centre) return undefined;
         const step = { x: event.clientX - area.left - centre.x, y: event.clientY - area.top - centre.y };
         const ways = inPlane(step, this.pixelsAlong(box, [0, 0, 0], 0, 1), this.pixelsAlong(box, [0, 0, 0], 1, 1));

@@ -124,7 +124,7 @@ export class CloudList extends ModelElement {
                     this.model.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
             />
             <div>
-                <button class="name" title="Show all of it" @click=${() => void this.model.flyToCloud(cloud.id)}>
+                <button class="name" title="Show all of it" @click=${() => void this.model.camera.flyToCloud(cloud.id)}>
                     ${cloud.name}
                 </button>
                 ${cloud.stage === 'failed'

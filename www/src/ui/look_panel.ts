@@ -44,22 +44,22 @@ export class LookPanel extends ModelElement {
         return html`<fieldset>
             <legend>View</legend>
             <div class="views">
-                <button @click=${() => model.showView('top')}>Top</button>
-                <button @click=${() => model.showView('front')}>Front</button>
-                <button @click=${() => model.showView('side')}>Side</button>
-                <button @click=${() => model.showView('iso')}>Iso</button>
-                <button title="Show all (F)" @click=${() => void model.flyToCloud()}>All</button>
+                <button @click=${() => model.camera.showView('top')}>Top</button>
+                <button @click=${() => model.camera.showView('front')}>Front</button>
+                <button @click=${() => model.camera.showView('side')}>Side</button>
+                <button @click=${() => model.camera.showView('iso')}>Iso</button>
+                <button title="Show all (F)" @click=${() => void model.camera.flyToCloud()}>All</button>
                 <button
                     title="Where the camera was before (U)"
-                    ?disabled=${!model.navigator.history.canGoBack}
-                    @click=${() => model.navigator.back()}
+                    ?disabled=${!model.camera.history.canGoBack}
+                    @click=${() => model.camera.back()}
                 >
                     Back
                 </button>
                 <button
                     title="Forth again (shift U)"
-                    ?disabled=${!model.navigator.history.canGoForward}
-                    @click=${() => model.navigator.forward()}
+                    ?disabled=${!model.camera.history.canGoForward}
+                    @click=${() => model.camera.forward()}
                 >
                     Forth
                 </button>
@@ -86,7 +86,7 @@ export class LookPanel extends ModelElement {
                     ['perspective', 'Persp.'],
                     ['orthographic', 'Ortho.'],
                 ],
-                (projection) => model.setProjection(projection),
+                (projection) => model.camera.setProjection(projection),
             )}
         </fieldset>`;
     }

@@ -59,7 +59,7 @@ export class MeasureOverlay extends OverlayElement {
     override render(): TemplateResult | string {
         const items = this.model.measuring.items.filter((item) => !item.hidden);
         if (items.length === 0) return '';
-        const places = this.model.project(items.flatMap((item) => [...corners(item), ...circle(item)]));
+        const places = this.model.surface.project(items.flatMap((item) => [...corners(item), ...circle(item)]));
         let at = 0;
         const next = (count: number): (Place | null)[] => places.slice(at, (at += count));
         // While a tool is in hand, clicks are for points of the cloud, also where a handle is.

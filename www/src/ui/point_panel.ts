@@ -38,12 +38,12 @@ export class PointPanel extends ModelElement {
     ];
 
     override render(): TemplateResult | string {
-        const picked = this.model.picked;
+        const picked = this.model.picking.point;
         if (!picked) return '';
         const [x, y, z] = picked.position;
         return html`<header>
                 <h2>Point</h2>
-                <button class="quiet" aria-label="Close the point" @click=${() => this.model.forgetPoint()}>✕</button>
+                <button class="quiet" aria-label="Close the point" @click=${() => this.model.picking.forget()}>✕</button>
             </header>
             <dl>
                 ${row('X', x)} ${row('Y', y)} ${row('Z', z)}

@@ -62,19 +62,19 @@ export class ScenePanel extends ModelElement {
     }
 
     private save(): void {
-        const text = `${JSON.stringify(this.model.scene(), null, 2)}\n`;
+        const text = `${JSON.stringify(this.model.scenes.scene(), null, 2)}\n`;
         download(new Blob([text], { type: 'application/json' }), 'scene.json');
     }
 
     private async load(event: Event): Promise<void> {
         const input = event.target as HTMLInputElement, file = input.files?.[0];
         input.value = '';
-        if (file) await this.model.openSceneFile(file);
+        if (file) await this.model.scenes.openFile(file);
     }
 
     private async share(): Promise<void> {
         const address = new URL(location.href);
-        address.hash = await toFragment(JSON.stringify(this.model.scene()));
+        address.hash = await toFragment(JSON.stringify(this.model.scenes.scene()));
         this.link = address.href;
         try {
             await navigator.clipboard.writeText(this.link);
@@ -85,7 +85,7 @@ export class ScenePanel extends ModelElement {
 
     private async picture(): Promise<void> {
         try {
-            download(await this.model.picture(), 'picture.png');
+            download(await this.model.surface.picture(), 'picture.png');
         } catch (error) {
             this.model.notify(messageOf(error));
         }

@@ -1,0 +1,102 @@
+import type { Model } from '../model.ts';
+import type { Limits, Style } from '../wasm/values.ts';
+import type { Viewer } from '../wasm/viewer.ts';
+import { mostSceneBytes, readScene } from './read_scene.ts';
+import { differences, type Scene, type SceneCloud, sceneMeasurement, sceneVersion } from './scene.ts';
+
+/** What the page shows as a scene, and a scene shown. */
+export class Scenes {
+    /** As the program has them at first: a scene says what differs. */
+    private readonly defaults: { style: Style; limits: Limits };
+
+    constructor(
+        private readonly model: Model,
+        private readonly viewer: Viewer,
+    ) {
+        this.defaults = { style: viewer.style(), limits: viewer.limits() };
+    }
+
+    scene(): Scene {
+        const { model, viewer } = this;
+        const clouds = viewer.clouds();
+        const indexOfCloud = (id: number): number => clouds.findIndex((cloud) => cloud.id === id);
+        const items = model.measuring.items.filter((item) => item.answer ?? item.error);
+        return {
+            stipple: 'scene',
+            version: sceneVersion,
+            clouds: clouds.map(({ id, name, visible }) => {
+                const address = model.addressOf(id);
+                return { ...(address === undefined ? { file: name } : { address }), name, visible };
+            }),
+            camera: viewer.camera(),
+            style: differences(viewer.style(), this.defaults.style),
+            limits: differences(viewer.limits(), this.defaults.limits),
+            navigation: model.navigator.mode,
+            unit: model.measuring.unit,
+            measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
+            annotations: model.annotations.items,
+        };
+    }
+
+    /** Shows the scene of a text; what is wrong with it is told, and leaves everything as it was. */
+    open(text: string): void {
+        this.model.act(() => this.show(readScene(text)));
+    }
+    async openFile(file: File): Promise<void> {
+        if (file.size > mostSceneBytes) this.model.notify(`${file.name} is too large to be a scene.`);
+        else this.open(await file.text());
+    }
+
+    private show(scene: Scene): void {
+        const { model, viewer } = this;
+        this.setUp(scene);
+        const ids = this.showClouds(scene.clouds);
+        viewer.setCamera(scene.camera); // a first cloud would be shown from its side
+        model.navigator.mode = scene.navigation;
+        model.measuring.unit = scene.unit;
+        model.measuring.replace(
+            scene.measurements.map((item) => ({
+                ...item,
+                points: item.points.map((point) => ({
+                    ...point,
+                    point: { ...point.point, cloud: ids[point.point.cloud] ?? 0 },
+                })),
+            })),
+        );
+        model.annotations.replace(scene.annotations);
+        model.camera.rememberSoon();
+    }
+
+    /** What may be wrong comes before anything is closed, and leaves all as it was. */
+    private setUp(scene: Scene): void {
+        const { viewer } = this;
+        const before = { style: viewer.style(), limits: viewer.limits() };
+        try {
+            viewer.setStyle({ ...this.defaults.style, ...scene.style });
+            viewer.setLimits({ ...this.defaults.limits, ...scene.limits });
+            viewer.setCamera(scene.camera);
+        } catch (error) {
+            viewer.setStyle(before.style);
+            viewer.setLimits(before.limits);
+            throw error;
+        }
+    }
+
+    /** Closes what the scene does not have and opens the rest; the ids, 0 for a file that has to be opened by hand. */
+    private showClouds(clouds: SceneCloud[]): number[] {
+        const { model } = this;
+        const kept = new Map<string, number>();
+        for (const { id, name } of this.viewer.clouds()) {
+            const address = model.addressOf(id);
+            const isWanted = clouds.some((cloud) => (address === undefined ? cloud.file === name : cloud.address === address));
+            if (!isWanted) model.close(id);
+            else if (address === undefined) kept.set(name, id);
+        }
+        return clouds.map(({ address, file, name, visible }) => {
+            const id = address === undefined ? kept.get(file!) : model.openAddress(address, name);
+            if (id !== undefined) this.viewer.setVisible(id, visible);
+            else model.notify(`The scene shows a file of this machine, ${file}: open it.`);
+            return id ?? 0;
+        });
+    }
+}
