@@ -1,26 +1,25 @@
 import { html, render } from 'lit';
 
 import { followDrops, followInput } from './input.ts';
-import { messageOf } from './messages.ts';
 import { Model } from './model.ts';
 import { fromFragment, isSceneFragment } from './scene/share_link.ts';
 import { listClouds, type CloudPage } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
+import { loadTexts, Texts } from './texts/texts.ts';
 import type { App } from './ui/app.ts';
 import './ui/app.ts';
 
 async function start(): Promise<void> {
     const list = listClouds(); // travels while the program loads
     list.catch(() => {}); // told by the model
+    const texts = await loadTexts([...new URLSearchParams(location.search).getAll('lang'), ...navigator.languages]);
     const canvas = document.createElement('canvas');
     canvas.tabIndex = 0;
-    canvas.setAttribute(
-        'aria-label',
-        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
-    );
+    document.documentElement.lang = texts.locale;
+    canvas.setAttribute('aria-label', texts.text('page.canvas'));
     document.body.append(canvas);
 
-    const model = await Model.create(canvas);
+    const model = await Model.create(canvas, texts);
     installTestHook(model);
     followInput(canvas, model);
     const layer = document.createElement('div');
@@ -41,7 +40,7 @@ async function openLinkedScene(model: Model): Promise<boolean> {
         model.scenes.open(await fromFragment(location.hash));
         return true;
     } catch (error) {
-        model.notify(messageOf(error));
+        model.tell(error);
         return false;
     }
 }
@@ -59,7 +58,8 @@ function explain(error: unknown): void {
     const box = document.createElement('p');
     box.className = 'failure';
     box.setAttribute('role', 'alert');
-    box.textContent = `Stipple can't start: ${messageOf(error)}`;
+    const texts = new Texts();
+    box.textContent = texts.text('page.cannotStart', { reason: texts.sentenceOf(error) });
     document.body.replaceChildren(box);
 }
 

@@ -4,12 +4,12 @@ import { Frames } from './drawing/frames.ts';
 import { Picking } from './drawing/picking.ts';
 import { Surface } from './drawing/surface.ts';
 import { Measuring } from './measuring/measuring.ts';
-import { messageOf } from './messages.ts';
 import { CameraMoves } from './navigation/camera_moves.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
 import { Scenes } from './scene/scenes.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
+import { Texts } from './texts/texts.ts';
 import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
@@ -29,6 +29,8 @@ export class Model extends EventTarget {
     counters!: Counters;
     /** Sentences for the person, newest last. */
     notices: string[] = [];
+    /** What is said, in the person's language. */
+    texts: Texts;
 
     readonly frames: Frames;
     readonly surface: Surface;
@@ -50,8 +52,10 @@ export class Model extends EventTarget {
     private constructor(
         readonly canvas: HTMLCanvasElement,
         private readonly viewer: Viewer,
+        texts: Texts,
     ) {
         super();
+        this.texts = texts;
         this.frames = new Frames(viewer, (drew) => this.drawn(drew));
         this.surface = new Surface(canvas, viewer);
         this.picking = new Picking(this, viewer);
@@ -61,10 +65,10 @@ export class Model extends EventTarget {
         this.surface.follow(this.frames, () => this.act(() => viewer.contextRestored()));
     }
 
-    static async create(canvas: HTMLCanvasElement): Promise<Model> {
+    static async create(canvas: HTMLCanvasElement, texts: Texts): Promise<Model> {
         let model: Model | undefined;
         const viewer = await Viewer.create(canvas, () => model?.wake());
-        return (model = new Model(canvas, viewer));
+        return (model = new Model(canvas, viewer, texts));
     }
 
     // Clouds
@@ -76,7 +80,7 @@ export class Model extends EventTarget {
             this.listed = [...this.listed, ...clouds];
             this.nextOfList = next;
         } catch (error) {
-            this.listError = messageOf(error);
+            this.listError = this.texts.sentenceOf(error);
         }
         this.changed();
     }
@@ -161,7 +165,7 @@ export class Model extends EventTarget {
         try {
             change();
         } catch (error) {
-            this.notify(messageOf(error));
+            this.tell(error);
         }
         this.read();
         this.changed();
@@ -171,6 +175,10 @@ export class Model extends EventTarget {
     notify(sentence: string): void {
         if (this.notices.at(-1) !== sentence) this.notices = [...this.notices.slice(-3), sentence];
         this.changed();
+    }
+    /** What went wrong. */
+    tell(error: unknown): void {
+        this.notify(this.texts.sentenceOf(error));
     }
     dismiss(sentence: string): void {
         this.notices = this.notices.filter((notice) => notice !== sentence);

@@ -1,3 +1,5 @@
+import { Problem } from './texts/message.ts';
+
 /** A cloud that the server offers, as GET api/v1/clouds lists it. */
 export interface ListedCloud {
     id: string;
@@ -18,7 +20,7 @@ export interface CloudPage {
 export async function listClouds(next = 'api/v1/clouds'): Promise<CloudPage> {
     const response = await fetch(new URL(next, document.baseURI), { cache: 'no-store' });
     if (response.status === 404) return { clouds: [] };
-    if (!response.ok) throw new Error(`The server's list of clouds can't be had: status ${response.status}.`);
+    if (!response.ok) throw new Problem('clouds.listFailed', { status: String(response.status) });
     if (!response.headers.get('content-type')?.includes('json')) return { clouds: [] };
     return (await response.json()) as CloudPage;
 }

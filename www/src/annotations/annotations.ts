@@ -33,7 +33,7 @@ export class Annotations extends EventTarget {
         const item: Annotation = {
             id: ++this.lastId,
             parent,
-            title: `Annotation ${this.lastId}`,
+            title: this.model.texts.text('annotations.numbered', { number: String(this.lastId) }),
             text: '',
             position,
             hidden: false,

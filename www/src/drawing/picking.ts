@@ -1,4 +1,3 @@
-import { messageOf } from '../messages.ts';
 import type { Model } from '../model.ts';
 import { Questions, type Reply } from './questions.ts';
 import type { PickedPoint, Vector } from '../wasm/values.ts';
@@ -40,7 +39,7 @@ export class Picking {
         try {
             this.point = await this.pick(x, y);
         } catch (error) {
-            this.model.notify(messageOf(error));
+            this.model.tell(error);
         }
         this.model.changed();
     }

@@ -1,3 +1,4 @@
+import type { Texts } from '../texts/texts.ts';
 import type { MeasureAnswer, MeasureKind, MeasureRequest, PlacedPoint } from '../wasm/values.ts';
 
 /** Something that was measured: exact points of clouds, and what client/survey says of them. */
@@ -15,7 +16,6 @@ export interface Measurement {
 
 export interface KindOfMeasurement {
     kind: MeasureKind;
-    label: string;
     /** With so many points it is complete; none: as many as the person wants. */
     points?: number;
     least: number;
@@ -23,13 +23,13 @@ export interface KindOfMeasurement {
 }
 
 export const kindsOfMeasurement: KindOfMeasurement[] = [
-    { kind: 'distance', label: 'Distance', least: 2 },
-    { kind: 'height', label: 'Height', least: 2, points: 2 },
-    { kind: 'area', label: 'Area', least: 3, isClosed: true },
-    { kind: 'angle', label: 'Angle', least: 3, points: 3 },
-    { kind: 'circle', label: 'Circle', least: 3, points: 3 },
-    { kind: 'azimuth', label: 'Azimuth', least: 2, points: 2 },
-    { kind: 'point', label: 'Point', least: 1, points: 1 },
+    { kind: 'distance', least: 2 },
+    { kind: 'height', least: 2, points: 2 },
+    { kind: 'area', least: 3, isClosed: true },
+    { kind: 'angle', least: 3, points: 3 },
+    { kind: 'circle', least: 3, points: 3 },
+    { kind: 'azimuth', least: 2, points: 2 },
+    { kind: 'point', least: 1, points: 1 },
 ];
 
 export function kindOf(kind: MeasureKind): KindOfMeasurement {
@@ -45,13 +45,17 @@ export function requestOf({ kind, points }: Measurement): MeasureRequest {
 }
 
 /** Why nothing can be measured of such points, whatever the kind; none if it can. */
-export function obstacleOf({ kind, points }: Measurement): string | undefined {
+export function obstacleOf({ kind, points }: Measurement, texts: Texts): string | undefined {
     if (kind === 'point') return undefined;
     if (points.some((point) => isAngular(point)))
-        return 'The coordinates are degrees: there is no distance between them. Convert the cloud to a projected coordinate system.';
+        return texts.text('measure.angular');
     if (points.some((point) => point.crs !== points[0]!.crs))
-        return `The points are of different coordinate systems: ${[...new Set(points.map(({ crs }) => crs || 'none'))].join(' and ')}.`;
+        return texts.text('measure.differentSystems', { systems: texts.list(systems(points, texts)) });
     return undefined;
+}
+
+function systems(points: PlacedPoint[], texts: Texts): string[] {
+    return [...new Set(points.map(({ crs }) => crs || texts.text('measure.noSystem')))];
 }
 
 function isAngular(point: PlacedPoint): boolean {

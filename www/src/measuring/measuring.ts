@@ -1,5 +1,4 @@
 import type { Model } from '../model.ts';
-import { messageOf } from '../messages.ts';
 import type { MeasureKind, PlacedPoint } from '../wasm/values.ts';
 import { kindOf, type Measurement, obstacleOf, requestOf } from './measurement.ts';
 import type { DisplayUnit } from './units.ts';
@@ -27,8 +26,10 @@ export class Measuring extends EventTarget {
     /** Takes the tool in hand: the next clicks are points of a new measurement. */
     start(kind: MeasureKind): void {
         this.finish();
+        const { texts } = this.model;
         const number = (this.numbers.get(kind) ?? 0) + 1;
-        this.drawn = { id: ++this.lastId, kind, name: `${kindOf(kind).label} ${number}`, hidden: false, points: [] };
+        const name = texts.text('measure.numbered', { kind: texts.text(`measure.${kind}`), number: String(number) });
+        this.drawn = { id: ++this.lastId, kind, name, hidden: false, points: [] };
         this.changed();
     }
 
@@ -117,7 +118,7 @@ export class Measuring extends EventTarget {
         try {
             return await this.model.picking.pick(x, y);
         } catch (error) {
-            this.model.notify(messageOf(error));
+            this.model.tell(error);
             return null;
         }
     }
@@ -126,12 +127,12 @@ export class Measuring extends EventTarget {
         delete item.answer;
         delete item.error;
         if (item.points.length < kindOf(item.kind).least) return;
-        const obstacle = obstacleOf(item);
+        const obstacle = obstacleOf(item, this.model.texts);
         try {
             if (obstacle) item.error = obstacle;
             else item.answer = this.model.measure(requestOf(item));
         } catch (error) {
-            item.error = messageOf(error);
+            item.error = this.model.texts.sentenceOf(error);
         }
     }
 

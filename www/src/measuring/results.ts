@@ -1,6 +1,10 @@
+import type { Key } from '../texts/message.ts';
+import type { Texts } from '../texts/texts.ts';
 import type { MeasureKind } from '../wasm/values.ts';
 import type { Measurement } from './measurement.ts';
-import { type DisplayUnit, formatValue, inUnit, unitSymbol } from './units.ts';
+import { decimalsOf, type DisplayUnit, inUnit, unitSymbol } from './units.ts';
+
+type ResultKey = Extract<Key, `result.${string}`>;
 
 /** A line of a result: 'Distance', '12.34 m', '0.05 m'. */
 export interface ResultLine {
@@ -13,45 +17,45 @@ export interface ResultLine {
 }
 
 /** What is shown of each kind, the most wanted first; 0: degrees, 1 to 3: powers of the unit of length. */
-const fields: Record<MeasureKind, [field: string, name: string, power: number][]> = {
+const fields: Record<MeasureKind, [field: string, name: ResultKey, power: number][]> = {
     point: [],
     distance: [
-        ['distance', 'Distance', 1],
-        ['horizontal', 'Horizontal', 1],
-        ['vertical', 'Vertical', 1],
+        ['distance', 'result.distance', 1],
+        ['horizontal', 'result.horizontal', 1],
+        ['vertical', 'result.vertical', 1],
     ],
     height: [
-        ['height', 'Height', 1],
-        ['horizontal', 'Horizontal', 1],
+        ['height', 'result.height', 1],
+        ['horizontal', 'result.horizontal', 1],
     ],
     azimuth: [
-        ['azimuth', 'Azimuth', 0],
-        ['gradient', 'Gradient', 0],
-        ['distance', 'Distance', 1],
+        ['azimuth', 'result.azimuth', 0],
+        ['gradient', 'result.gradient', 0],
+        ['distance', 'result.distance', 1],
     ],
-    angle: [['angle', 'Angle', 0]],
+    angle: [['angle', 'result.angle', 0]],
     area: [
-        ['horizontal', 'Area in plan', 2],
-        ['inPlane', 'Area in its plane', 2],
-        ['perimeter', 'Perimeter', 1],
-        ['deviation', 'Off the plane', 1],
+        ['horizontal', 'result.areaInPlan', 2],
+        ['inPlane', 'result.areaInPlane', 2],
+        ['perimeter', 'result.perimeter', 1],
+        ['deviation', 'result.offPlane', 1],
     ],
     circle: [
-        ['radius', 'Radius', 1],
-        ['diameter', 'Diameter', 1],
-        ['circumference', 'Circumference', 1],
-        ['area', 'Area', 2],
+        ['radius', 'result.radius', 1],
+        ['diameter', 'result.diameter', 1],
+        ['circumference', 'result.circumference', 1],
+        ['area', 'result.area', 2],
     ],
 };
 
-export function resultLines(measurement: Measurement, unit: DisplayUnit): ResultLine[] {
+export function resultLines(measurement: Measurement, unit: DisplayUnit, texts: Texts): ResultLine[] {
     const { kind, points, answer } = measurement;
     if (!answer) return [];
     if (kind === 'point')
         return points[0]!.position.map((value, axis) => ({
             name: 'XYZ'[axis]!,
             field: 'XYZ'[axis]!,
-            value: String(value),
+            value: texts.number(value),
         }));
     return fields[kind].flatMap(([field, name, power]) => {
         const value = answer[field], deviation = answer[`±${field}`];
@@ -60,10 +64,10 @@ export function resultLines(measurement: Measurement, unit: DisplayUnit): Result
         const symbol = power === 0 ? '°' : ` ${unitSymbol(power, points[0]!, unit)}`;
         const off = typeof deviation === 'number' && deviation > 0 ? shown(deviation) : undefined;
         return {
-            name,
+            name: texts.text(name),
             field,
-            value: formatValue(shown(value), off) + symbol,
-            ...(off !== undefined && { deviation: formatValue(off, off) + symbol }),
+            value: texts.decimals(shown(value), decimalsOf(off)) + symbol,
+            ...(off !== undefined && { deviation: texts.decimals(off, decimalsOf(off)) + symbol }),
         };
     });
 }

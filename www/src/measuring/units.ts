@@ -1,12 +1,7 @@
 /** Units that lengths are shown in; metres of one as in client/survey/units.hpp. */
 export type DisplayUnit = 'stored' | 'm' | 'ft' | 'us-ft';
 
-export const displayUnits: [DisplayUnit, string][] = [
-    ['stored', 'As the cloud'],
-    ['m', 'Metres'],
-    ['ft', 'Feet'],
-    ['us-ft', 'US survey feet'],
-];
+export const displayUnits: DisplayUnit[] = ['stored', 'm', 'ft', 'us-ft'];
 
 const metres: Record<Exclude<DisplayUnit, 'stored'>, number> = { m: 1, ft: 0.3048, 'us-ft': 1200 / 3937 };
 const symbols: Record<Exclude<DisplayUnit, 'stored'>, string> = { m: 'm', ft: 'ft', 'us-ft': 'ft US' };
@@ -36,8 +31,7 @@ function symbolOf({ unit, unitMeters }: StoredUnit): string {
     return known ? symbols[known] : unit;
 }
 
-/** As many decimals as the deviation bears out: two significant digits of it, at most `most`. */
-export function formatValue(value: number, deviation = 0, most = 4): string {
-    const decimals = deviation > 0 ? Math.max(0, Math.min(most, 1 - Math.floor(Math.log10(deviation)))) : most;
-    return value.toFixed(decimals);
+/** As many as the deviation bears out: two significant digits of it, at most `most`. */
+export function decimalsOf(deviation = 0, most = 4): number {
+    return deviation > 0 ? Math.max(0, Math.min(most, 1 - Math.floor(Math.log10(deviation)))) : most;
 }

@@ -1,4 +1,3 @@
-import { messageOf } from '../messages.ts';
 import type { Model } from '../model.ts';
 import type { Vector } from '../wasm/values.ts';
 
@@ -136,7 +135,7 @@ export class Navigator {
         try {
             use(await this.model.picking.place(x, y));
         } catch (error) {
-            this.model.notify(messageOf(error));
+            this.model.tell(error);
         }
     }
 }

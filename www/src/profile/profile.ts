@@ -1,5 +1,5 @@
-import { messageOf } from '../messages.ts';
 import type { Model } from '../model.ts';
+import { Problem } from '../texts/message.ts';
 import type { Vector } from '../wasm/values.ts';
 import { ProfilePoints, readProfile } from './profile_points.ts';
 
@@ -71,7 +71,7 @@ export class Profile extends EventTarget {
         this.changed();
         try {
             if (this.addresses('csv').length === 0)
-                throw new Error("Profiles are cut by the page's server, and none of the open clouds is one of it.");
+                throw new Problem('profile.noServer');
             for (let look = 0, goesOn = true; look <= looks && goesOn; look++) {
                 const isLast = look === looks;
                 const spacing = this.length / firstLook / 2 ** look;
@@ -82,7 +82,7 @@ export class Profile extends EventTarget {
             }
         } catch (error) {
             if (abort.signal.aborted) return;
-            this.error = messageOf(error);
+            this.error = this.model.texts.sentenceOf(error);
         }
         this.isLoading = false;
         this.changed();
@@ -94,7 +94,7 @@ export class Profile extends EventTarget {
         for (const { name, href } of this.addresses('csv', spacing === undefined ? {} : { spacing: String(spacing) })) {
             const wanted = this.attributesOf(name);
             const response = await fetch(`${href}&attributes=${encodeURIComponent(wanted)}`, { signal });
-            if (!response.ok) throw new Error(await sentenceOf(response));
+            if (!response.ok) throw await problemOf(response);
             await readProfile(response.body!, points);
         }
         if (signal.aborted) return false;
@@ -114,11 +114,11 @@ export class Profile extends EventTarget {
 }
 
 /** What a problem document (RFC 9457) says. */
-async function sentenceOf(response: Response): Promise<string> {
+async function problemOf(response: Response): Promise<Error> {
     try {
         const problem = (await response.json()) as { detail?: string; title?: string };
-        return `The server has no profile: ${problem.detail ?? problem.title}`;
+        return new Problem('profile.refused', { reason: problem.detail ?? problem.title ?? '' });
     } catch {
-        return `The server has no profile: status ${response.status}.`;
+        return new Problem('profile.refusedStatus', { status: String(response.status) });
     }
 }

@@ -1,3 +1,5 @@
+import { Problem } from '../texts/message.ts';
+
 /** Points of a profile, column by column; `colour`: 0xAABBGGRR, as a canvas has it. */
 export class ProfilePoints {
     count = 0;
@@ -62,7 +64,7 @@ export async function readProfile(body: ReadableStream<Uint8Array>, into: Profil
         if (!columns) {
             columns = Object.fromEntries(fields.map((name, at) => [name.trim(), at]));
             for (const name of ['X', 'Y', 'Z', 'Station', 'Offset'])
-                if (columns[name] === undefined) throw new Error(`The server's profile has no column ${name}.`);
+                if (columns[name] === undefined) throw new Problem('profile.noColumn', { name });
             return;
         }
         const number = (name: string): number => Number(fields[columns![name]!]);

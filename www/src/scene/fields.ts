@@ -1,3 +1,5 @@
+import { Problem } from '../texts/message.ts';
+
 /** Reads fields of JSON that may come from anybody: each has a type and a limit, and what is wrong is said by its name. */
 export class FieldReader {
     private readonly unread: Set<string>;
@@ -11,44 +13,48 @@ export class FieldReader {
 
     static of(value: unknown, path: string): FieldReader {
         if (typeof value !== 'object' || value === null || Array.isArray(value))
-            throw new Error(`${path || 'The scene'} must be an object {…}.`);
+            throw new Problem('scene.mustBeObject', { place: path || 'scene' });
         return new FieldReader(value as Record<string, unknown>, path);
     }
 
     text(name: string, fallback: string, most = 1000): string {
         const value = this.take(name);
         if (value === undefined) return fallback;
-        if (typeof value !== 'string' || value.length > most) this.fail(name, `a text of at most ${most} characters`);
+        if (typeof value !== 'string' || value.length > most)
+            throw new Problem('scene.mustBeText', { place: this.placeOf(name), most });
         return value as string;
     }
     flag(name: string, fallback: boolean): boolean {
         const value = this.take(name);
         if (value === undefined) return fallback;
-        if (typeof value !== 'boolean') this.fail(name, 'true or false');
+        if (typeof value !== 'boolean') throw new Problem('scene.mustBeFlag', { place: this.placeOf(name) });
         return value as boolean;
     }
     number(name: string, fallback: number, isRight: (value: number) => boolean = () => true): number {
         const value = this.take(name);
         if (value === undefined) return fallback;
-        if (typeof value !== 'number' || !Number.isFinite(value) || !isRight(value)) this.fail(name, 'a number that fits');
+        if (typeof value !== 'number' || !Number.isFinite(value) || !isRight(value))
+            throw new Problem('scene.mustBeNumber', { place: this.placeOf(name) });
         return value as number;
     }
     vector(name: string, isRight: (value: number) => boolean = () => true): [number, number, number] {
         const value = this.take(name);
         const isOne = Array.isArray(value) && value.length === 3 && value.every((n) => Number.isFinite(n) && isRight(n));
-        if (!isOne) this.fail(name, 'three numbers [x, y, z]');
+        if (!isOne) throw new Problem('scene.mustBeVector', { place: this.placeOf(name) });
         return value as [number, number, number];
     }
     oneOf<T extends string>(name: string, options: readonly T[], fallback?: T): T {
         const value = this.take(name);
         if (value === undefined && fallback !== undefined) return fallback;
-        if (!options.includes(value as T)) this.fail(name, `one of ${options.join(', ')}`);
+        if (!options.includes(value as T))
+            throw new Problem('scene.mustBeOneOf', { place: this.placeOf(name), options: options.join(', ') });
         return value as T;
     }
     object(name: string): Record<string, unknown> {
         const value = this.take(name);
         if (value === undefined) return {};
-        if (typeof value !== 'object' || value === null || Array.isArray(value)) this.fail(name, 'an object {…}');
+        if (typeof value !== 'object' || value === null || Array.isArray(value))
+            throw new Problem('scene.mustBeObject', { place: this.placeOf(name) });
         return value as Record<string, unknown>;
     }
     optionalObject(name: string): Record<string, unknown> | undefined {
@@ -57,12 +63,13 @@ export class FieldReader {
     list<T>(name: string, most: number, read: (item: unknown, path: string) => T): T[] {
         const value = this.take(name);
         if (value === undefined) return [];
-        if (!Array.isArray(value) || value.length > most) this.fail(name, `a list of at most ${most}`);
+        if (!Array.isArray(value) || value.length > most)
+            throw new Problem('scene.mustBeList', { place: this.placeOf(name), most });
         return (value as unknown[]).map((item, index) => read(item, `${this.placeOf(name)}[${index}]`));
     }
     /** To be called last: a field that nobody asked for is a mistake, or of a later version. */
     finish(): void {
-        for (const name of this.unread) throw new Error(`${this.placeOf(name)} is not a field of a scene.`);
+        for (const name of this.unread) throw new Problem('scene.unknownField', { place: this.placeOf(name) });
     }
 
     private take(name: string): unknown {
@@ -71,8 +78,5 @@ export class FieldReader {
     }
     private placeOf(name: string): string {
         return this.path ? `${this.path}.${name}` : name;
-    }
-    private fail(name: string, wanted: string): never {
-        throw new Error(`${this.placeOf(name)} must be ${wanted}.`);
     }
 }

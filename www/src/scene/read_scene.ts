@@ -2,6 +2,7 @@ import type { Annotation } from '../annotations/annotation.ts';
 import { kindsOfMeasurement, kindOf } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
 import type { Camera, Limits, PlacedPoint, Style } from '../wasm/values.ts';
+import { Problem } from '../texts/message.ts';
 import { FieldReader } from './fields.ts';
 import { type Scene, type SceneCloud, type SceneMeasurement, sceneVersion } from './scene.ts';
 
@@ -14,18 +15,18 @@ const isWhole = (value: number): boolean => Number.isSafeInteger(value);
  * here; the program says what is wrong in them when they are set.
  */
 export function readScene(text: string): Scene {
-    if (text.length > mostSceneBytes) throw new Error(`The scene has more than ${mostSceneBytes >> 20} MiB.`);
+    if (text.length > mostSceneBytes) throw new Problem('scene.tooLarge', { mebibytes: mostSceneBytes >> 20 });
     let value: unknown;
     try {
         value = JSON.parse(text);
     } catch (error) {
-        throw new Error(`This is no scene: it is not JSON (${error instanceof Error ? error.message : String(error)}).`);
+        throw new Problem('scene.notJson', { reason: error instanceof Error ? error.message : String(error) });
     }
     const fields = FieldReader.of(value, '');
-    if (fields.text('stipple', '') !== 'scene') throw new Error('This JSON is not a scene of Stipple.');
+    if (fields.text('stipple', '') !== 'scene') throw new Problem('scene.notOurs');
     const version = fields.number('version', 0, isWhole);
     if (version > sceneVersion)
-        throw new Error(`The scene is of version ${version}; this page reads up to ${sceneVersion}. Use a newer page.`);
+        throw new Problem('scene.tooNew', { version, known: sceneVersion });
     const scene: Scene = {
         stipple: 'scene',
         version,
@@ -34,7 +35,7 @@ export function readScene(text: string): Scene {
         style: fields.object('style') as Partial<Style>,
         limits: fields.object('limits') as Partial<Limits>,
         navigation: fields.oneOf('navigation', ['orbit', 'earth', 'fly'], 'orbit'),
-        unit: fields.oneOf('unit', displayUnits.map(([unit]) => unit), 'stored'),
+        unit: fields.oneOf('unit', displayUnits, 'stored'),
         measurements: fields.list('measurements', 10_000, readMeasurement),
         annotations: fields.list('annotations', 10_000, readAnnotation),
     };
@@ -52,7 +53,7 @@ function readCloud(value: unknown, path: string): SceneCloud {
         name: fields.text('name', address || file),
         visible: fields.flag('visible', true),
     };
-    if (!address === !file) throw new Error(`${path} must have an address, or the name of a file.`);
+    if (!address === !file) throw new Problem('scene.cloudAddress', { place: path });
     fields.finish();
     return cloud;
 }
@@ -66,7 +67,7 @@ function checkedAddress(address: string, path: string): string {
         // told below
     }
     if (protocol !== 'http:' && protocol !== 'https:')
-        throw new Error(`${path}.address must be an address that begins with http or https, or a path.`);
+        throw new Problem('scene.address', { place: `${path}.address` });
     return address;
 }
 
@@ -75,14 +76,14 @@ function readMeasurement(value: unknown, path: string): SceneMeasurement {
     const kind = fields.oneOf('kind', kindsOfMeasurement.map((known) => known.kind));
     const measurement: SceneMeasurement = {
         kind,
-        name: fields.text('name', kindOf(kind).label),
+        name: fields.text('name', ''),
         hidden: fields.flag('hidden', false),
         points: fields.list('points', 10_000, readPoint),
     };
     fields.finish();
     const { least, points } = kindOf(kind), count = measurement.points.length;
-    if (count < least || (points !== undefined && count > points))
-        throw new Error(`${path} has ${count} points, which are too ${count < least ? 'few' : 'many'} for its kind, ${kind}.`);
+    if (count < least) throw new Problem('scene.fewPoints', { place: path, kind, number: count });
+    if (points !== undefined && count > points) throw new Problem('scene.manyPoints', { place: path, kind, number: count });
     return measurement;
 }
 
@@ -92,7 +93,7 @@ function readAnnotation(value: unknown, path: string): Annotation {
     const annotation: Annotation = {
         id: fields.number('id', 0, (id) => isWhole(id) && id > 0),
         parent: fields.number('parent', 0, isWhole),
-        title: fields.text('title', 'Annotation'),
+        title: fields.text('title', ''),
         text: fields.text('text', '', 100_000),
         position: fields.vector('position'),
         ...(camera && { camera: camera as unknown as Camera }),
@@ -108,14 +109,11 @@ const deepestTree = 32;
 /** Ids are different, parents are there, none belongs to itself, and none too deep in others. */
 function checkTree(annotations: Annotation[]): void {
     const parents = new Map(annotations.map(({ id, parent }) => [id, parent]));
-    if (parents.size !== annotations.length) throw new Error('annotations: two have the same id.');
+    if (parents.size !== annotations.length) throw new Problem('scene.sameId');
     for (const { id } of annotations) {
         let at: number | undefined = id;
         for (let depth = 0; at !== 0 && at !== undefined && depth <= deepestTree; depth++) at = parents.get(at);
-        if (at !== 0)
-            throw new Error(
-                `annotations: the one with id ${id} belongs to none that is there, to itself, or is deeper than ${deepestTree}.`,
-            );
+        if (at !== 0) throw new Problem('scene.badParent', { id: String(id), most: deepestTree });
     }
 }
 

@@ -43,12 +43,12 @@ export class Scenes {
         this.model.act(() => this.show(readScene(text)));
     }
     async openFile(file: File): Promise<void> {
-        if (file.size > mostSceneBytes) this.model.notify(`${file.name} is too large to be a scene.`);
+        if (file.size > mostSceneBytes) this.model.notify(this.model.texts.text('scene.fileTooLarge', { name: file.name }));
         else this.open(await file.text());
     }
 
     private show(scene: Scene): void {
-        const { model, viewer } = this;
+        const { model, viewer } = this, { texts } = model;
         this.setUp(scene);
         const ids = this.showClouds(scene.clouds);
         viewer.setCamera(scene.camera); // a first cloud would be shown from its side
@@ -57,13 +57,16 @@ export class Scenes {
         model.measuring.replace(
             scene.measurements.map((item) => ({
                 ...item,
+                name: item.name || texts.text(`measure.${item.kind}`),
                 points: item.points.map((point) => ({
                     ...point,
                     point: { ...point.point, cloud: ids[point.point.cloud] ?? 0 },
                 })),
             })),
         );
-        model.annotations.replace(scene.annotations);
+        model.annotations.replace(
+            scene.annotations.map((item) => ({ ...item, title: item.title || texts.text('annotations.one') })),
+        );
         model.camera.rememberSoon();
     }
 
@@ -95,7 +98,7 @@ export class Scenes {
         return clouds.map(({ address, file, name, visible }) => {
             const id = address === undefined ? kept.get(file!) : model.openAddress(address, name);
             if (id !== undefined) this.viewer.setVisible(id, visible);
-            else model.notify(`The scene shows a file of this machine, ${file}: open it.`);
+            else model.notify(model.texts.text('scene.openByHand', { name: file! }));
             return id ?? 0;
         });
     }

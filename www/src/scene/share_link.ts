@@ -1,3 +1,5 @@
+import { Problem } from '../texts/message.ts';
+
 /** Scenes in the fragment of an address, which no server gets to see: deflated (RFC 1951), in base64url (RFC 4648 §5). */
 
 const prefix = '#scene=';
@@ -22,8 +24,8 @@ export async function fromFragment(fragment: string): Promise<string> {
         const packed = Uint8Array.from(binary, (c) => c.charCodeAt(0));
         const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
         return new TextDecoder('utf-8', { fatal: true }).decode(await collect(stream));
-    } catch (error) {
-        throw new Error('The scene in this link is cut or damaged: ask for the whole link.', { cause: error });
+    } catch {
+        throw new Problem('scene.linkDamaged');
     }
 }
 

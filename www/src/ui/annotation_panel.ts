@@ -91,9 +91,9 @@ export class AnnotationPanel extends ModelElement {
     override render(): TemplateResult {
         const { annotations } = this.model;
         return html`<fieldset>
-            <legend>Annotations</legend>
+            <legend>${this.text('annotations')}</legend>
             <button class="add" aria-pressed=${annotations.isPlacing} @click=${() => annotations.place()}>
-                ${annotations.isPlacing ? 'Click a point…' : 'New annotation'}
+                ${this.text(annotations.isPlacing ? 'annotations.placing' : 'annotations.new')}
             </button>
             ${this.renderList(0)}
         </fieldset>`;
@@ -111,12 +111,17 @@ export class AnnotationPanel extends ModelElement {
                 <button class="title" aria-expanded=${isOpen} @click=${() => annotations.open(item.id)}>${item.title}</button>
                 <button
                     aria-pressed=${item.hidden}
-                    aria-label=${`Hide ${item.title}`}
+                    aria-label=${this.text('annotations.hide', { title: item.title })}
                     @click=${() => annotations.change(item.id, { hidden: !item.hidden })}
                 >
                     ${item.hidden ? '◌' : '●'}
                 </button>
-                <button aria-label=${`Fly to ${item.title}`} @click=${() => void annotations.flyTo(item.id)}>→</button>
+                <button
+                    aria-label=${this.text('annotations.flyTo', { title: item.title })}
+                    @click=${() => void annotations.flyTo(item.id)}
+                >
+                    →
+                </button>
             </div>
             ${isOpen ? this.renderEditor(item) : ''} ${this.renderList(item.id)}
         </li>`;
@@ -128,39 +133,41 @@ export class AnnotationPanel extends ModelElement {
         const others = annotations.items.filter((other) => other.id !== item.id);
         return html`<div class="edit">
             <input
-                aria-label="Title"
+                aria-label=${this.text('annotations.title')}
                 .value=${item.title}
                 @change=${(event: Event) => annotations.change(item.id, { title: value(event).trim() || item.title })}
             />
             <textarea
-                aria-label="Text (Markdown)"
+                aria-label=${this.text('annotations.text')}
                 rows="4"
-                placeholder="Text, in Markdown"
+                placeholder=${this.text('annotations.textHint')}
                 .value=${item.text}
                 @change=${(event: Event) => annotations.change(item.id, { text: value(event) })}
             ></textarea>
             ${select(
-                'Belongs to',
+                this.text('annotations.parent'),
                 String(item.parent),
-                [['0', 'None'], ...others.map(({ id, title }): [string, string] => [String(id), title])],
+                [['0', this.text('annotations.noParent')], ...others.map(({ id, title }): [string, string] => [String(id), title])],
                 (parent) => annotations.change(item.id, { parent: Number(parent) }),
             )}
             <label class="row">
-                <span>Shown up to</span>
+                <span>${this.text('annotations.upTo')}</span>
                 <input
                     type="number"
                     min="0"
                     step="any"
-                    placeholder="any distance"
-                    aria-label="Shown up to this distance"
+                    placeholder=${this.text('annotations.anyDistance')}
+                    aria-label=${this.text('annotations.upToLabel')}
                     .value=${item.maxDistance > 0 ? String(item.maxDistance) : ''}
                     @change=${(event: Event) =>
                         annotations.change(item.id, { maxDistance: Math.max(0, Number(value(event)) || 0) })}
                 />
             </label>
             <div class="ways">
-                <button @click=${() => annotations.keepView(item.id)}>${item.camera ? 'Keep this view instead' : 'Keep this view'}</button>
-                <button @click=${() => annotations.remove(item.id)}>Delete</button>
+                <button @click=${() => annotations.keepView(item.id)}>
+                    ${this.text(item.camera ? 'annotations.keepViewInstead' : 'annotations.keepView')}
+                </button>
+                <button @click=${() => annotations.remove(item.id)}>${this.text('annotations.delete')}</button>
             </div>
         </div>`;
     }

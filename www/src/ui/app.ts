@@ -13,7 +13,7 @@ import './scene_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
 
-import { formatCompact, formatBytes, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 /** Everything over the canvas: the panel, the counters, the status line, notices. */
@@ -248,17 +248,17 @@ export class App extends ModelElement {
             <stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
             ${this.renderProgress()} ${this.renderControls()}
             ${this.countersAreOpen
-                ? html`<aside class="panel counters" aria-label="Counters">
+                ? html`<aside class="panel counters" aria-label=${this.text('counters')}>
                       <stipple-counters .model=${this.model}></stipple-counters>
                   </aside>`
                 : ''}
             ${this.model.picking.point
-                ? html`<aside class="panel point" aria-label="Point" aria-live="polite">
+                ? html`<aside class="panel point" aria-label=${this.text('point')} aria-live="polite">
                       <stipple-point .model=${this.model}></stipple-point>
                   </aside>`
                 : ''}
             ${this.model.profile.isOpen
-                ? html`<aside class="panel profile" aria-label="Profile">
+                ? html`<aside class="panel profile" aria-label=${this.text('profile')}>
                       <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
@@ -270,7 +270,7 @@ export class App extends ModelElement {
                             <span>${notice}</span>
                             <button
                                 class="quiet"
-                                aria-label="Dismiss"
+                                aria-label=${this.text('page.dismiss')}
                                 @click=${() => this.model.dismiss(notice)}
                             >
                                 ✕
@@ -278,11 +278,11 @@ export class App extends ModelElement {
                         </div>`,
                 )}
             </div>
-            ${this.isDropTarget ? html`<div class="drop">Drop a .stipple file to open it</div>` : ''}`;
+            ${this.isDropTarget ? html`<div class="drop">${this.text('page.drop')}</div>` : ''}`;
     }
 
     private renderControls(): TemplateResult {
-        return html`<section class="panel controls ${this.panelIsOpen ? '' : 'closed'}" aria-label="Controls">
+        return html`<section class="panel controls ${this.panelIsOpen ? '' : 'closed'}" aria-label=${this.text('page.controls')}>
             <header>
                 <h1>Stipple</h1>
                 <button
@@ -291,7 +291,7 @@ export class App extends ModelElement {
                     aria-controls="body"
                     @click=${() => (this.panelIsOpen = !this.panelIsOpen)}
                 >
-                    ${this.panelIsOpen ? 'Hide' : 'Controls'}
+                    ${this.text(this.panelIsOpen ? 'page.hide' : 'page.controls')}
                 </button>
             </header>
             <div class="body" id="body" ?hidden=${!this.panelIsOpen}>
@@ -306,17 +306,17 @@ export class App extends ModelElement {
     }
 
     private renderStatus(): TemplateResult {
-        const { frame, session } = this.model.counters;
+        const { frame, session } = this.model.counters, drawn = Number(frame['pointsDrawn']);
         return html`<div class="status">
-            <span>${formatCompact(Number(frame['pointsDrawn']))} points</span>
+            <span>${this.text('page.points', { count: drawn, shown: this.texts.compact(drawn) })}</span>
             <span aria-hidden="true">·</span>
-            <span>${formatBytes(session['bytesReceived']!)} fetched</span>
+            <span>${this.text('page.fetched', { bytes: this.texts.bytes(session['bytesReceived']!) })}</span>
             <button
                 class="quiet"
                 aria-expanded=${this.countersAreOpen}
                 @click=${() => (this.countersAreOpen = !this.countersAreOpen)}
             >
-                Counters
+                ${this.text('counters')}
             </button>
         </div>`;
     }
@@ -327,7 +327,7 @@ export class App extends ModelElement {
         if (settled) return '';
         const wanted = Math.max(1, Number(frame['nodesSelected']));
         return html`<progress
-            aria-label="Loading"
+            aria-label=${this.text('page.loading')}
             max=${wanted}
             .value=${Number(frame['nodesDrawn'])}
         ></progress>`;

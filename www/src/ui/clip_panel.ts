@@ -6,11 +6,7 @@ import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
-const modes: [ClipBox['mode'], string][] = [
-    ['hideOutside', 'Hide outside'],
-    ['hideInside', 'Hide inside'],
-    ['highlight', 'Highlight'],
-];
+const modes: ClipBox['mode'][] = ['hideOutside', 'hideInside', 'highlight'];
 const formats = ['laz', 'las', 'ply', 'csv'];
 
 /** Clip boxes by number: mode, centre, size, heading; and the points inside as files. */
@@ -78,8 +74,8 @@ export class ClipPanel extends ModelElement {
     override render(): TemplateResult {
         const { clipping } = this.model;
         return html`<fieldset>
-            <legend>Clip boxes</legend>
-            <button class="add" @click=${() => void clipping.add()}>New box</button>
+            <legend>${this.text('clip')}</legend>
+            <button class="add" @click=${() => void clipping.add()}>${this.text('clip.new')}</button>
             <ul>
                 ${clipping.boxes.map((box, index) => this.renderBox(box, index))}
             </ul>
@@ -89,29 +85,34 @@ export class ClipPanel extends ModelElement {
     private renderBox(box: ClipBox, index: number): TemplateResult {
         const { clipping } = this.model;
         const change = (next: ClipBox): void => clipping.change(index, next);
-        const name = `Box ${index + 1}`, heading = headingOf(box);
+        const name = this.text('clip.box', { number: index + 1 }), heading = headingOf(box);
         return html`<li class=${clipping.selected === index ? 'selected' : ''} data-box=${index}>
             <div class="head">
                 <strong>${name}</strong>
                 <button
                     aria-pressed=${clipping.selected === index}
-                    aria-label=${`Edit ${name}`}
+                    aria-label=${this.text('clip.edit', { name })}
                     @click=${() => clipping.select(index)}
                 >
-                    Handles
+                    ${this.text('clip.handles')}
                 </button>
-                <button aria-label=${`Delete ${name}`} @click=${() => clipping.remove(index)}>✕</button>
+                <button aria-label=${this.text('clip.delete', { name })} @click=${() => clipping.remove(index)}>✕</button>
             </div>
-            ${select(`Mode`, box.mode, modes, (mode) => change({ ...box, mode }))}
-            ${this.renderNumbers(`Centre`, name, box.centre, (axis, value) =>
+            ${select(
+                this.text('clip.mode'),
+                box.mode,
+                modes.map((mode) => [mode, this.text(`clip.${mode}`)]),
+                (mode) => change({ ...box, mode }),
+            )}
+            ${this.renderNumbers(this.text('clip.centre'), name, box.centre, (axis, value) =>
                 change(withCentre(box, box.centre.map((old, at) => (at === axis ? value : old)) as Vector)),
             )}
-            ${this.renderNumbers(`Size`, name, box.halfSize.map((half) => 2 * half), (axis, value) =>
+            ${this.renderNumbers(this.text('clip.size'), name, box.halfSize.map((half) => 2 * half), (axis, value) =>
                 change(withSize(box, axis, value)),
             )}
             ${heading === undefined
-                ? html`<p class="files">It is turned about more than z.</p>`
-                : this.renderNumbers(`Heading`, name, [heading], (_, value) => change(withHeading(box, value)))}
+                ? html`<p class="files">${this.text('clip.turned')}</p>`
+                : this.renderNumbers(this.text('clip.heading'), name, [heading], (_, value) => change(withHeading(box, value)))}
             ${clipping.apisOfClouds().map(({ name: cloud, api }) => this.renderFiles(cloud, api, box))}
         </li>`;
     }
@@ -130,7 +131,9 @@ export class ClipPanel extends ModelElement {
                         type="number"
                         step="any"
                         title=${String(value)}
-                        aria-label=${`${label} ${values.length > 1 ? 'xyz'[axis] : ''} of ${of}`.replace('  ', ' ')}
+                        aria-label=${values.length > 1
+                            ? this.text('clip.axisOf', { label, axis: 'xyz'[axis]!, name: of })
+                            : this.text('clip.fieldOf', { label, name: of })}
                         .value=${String(Number(value.toPrecision(12)))}
                         @change=${(event: Event) => {
                             const input = event.target as HTMLInputElement, number = input.valueAsNumber;
@@ -149,7 +152,7 @@ export class ClipPanel extends ModelElement {
             const address = pointsAddress(api, box, format);
             return address === undefined ? [] : html`<a href=${address} download>${format.toUpperCase()}</a>`;
         });
-        return links.length > 0 ? html`<p class="files">${cloud}, inside: ${links}</p>` : '';
+        return links.length > 0 ? html`<p class="files">${this.text('clip.inside', { cloud })} ${links}</p>` : '';
     }
 }
 

@@ -1,7 +1,7 @@
 import { css, html, type TemplateResult } from 'lit';
 
 import type { CloudState } from '../wasm/values.ts';
-import { formatCompact, formatCount, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 /** The clouds that are open, those that the server offers besides, and the ways to open more. */
@@ -87,7 +87,7 @@ export class CloudList extends ModelElement {
     override render(): TemplateResult {
         const { clouds, listed } = this.model;
         const offers = listed.filter((cloud) => !this.model.isOpen(cloud.address));
-        return html`<h2>Clouds</h2>
+        return html`<h2>${this.text('clouds')}</h2>
             <ul>
                 ${clouds.map((cloud) => this.renderCloud(cloud))}
                 ${offers.map(
@@ -97,19 +97,19 @@ export class CloudList extends ModelElement {
                             @click=${() => this.model.openAddress(cloud.address, cloud.name)}
                         >
                             <span class="name">${cloud.name}</span>
-                            <small>${formatCompact(cloud.pointCount)} points</small>
+                            <small>${this.points(cloud.pointCount, this.texts.compact(cloud.pointCount))}</small>
                         </button>`,
                 )}
             </ul>
             ${this.model.nextOfList === undefined
                 ? ''
-                : html`<button class="open" @click=${() => this.model.listMore()}>More clouds…</button>`}
+                : html`<button class="open" @click=${() => this.model.listMore()}>${this.text('clouds.more')}</button>`}
             ${clouds.length + offers.length === 0
-                ? html`<p>${this.model.listError || 'Open a .stipple file, or drop one anywhere on the page.'}</p>`
+                ? html`<p>${this.model.listError || this.text('clouds.none')}</p>`
                 : ''}
             <input type="file" id="file" accept=".stipple" multiple @change=${this.pick} />
             <button class="open" @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#file')!.click()}>
-                Open a file…
+                ${this.text('clouds.openFile')}
             </button>`;
     }
 
@@ -117,29 +117,33 @@ export class CloudList extends ModelElement {
         return html`<li class=${cloud.stage}>
             <input
                 type="checkbox"
-                aria-label=${`Show ${cloud.name}`}
+                aria-label=${this.text('clouds.show', { name: cloud.name })}
                 .checked=${cloud.visible}
                 ?disabled=${cloud.stage === 'failed'}
                 @change=${(event: Event) =>
                     this.model.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
             />
             <div>
-                <button class="name" title="Show all of it" @click=${() => void this.model.camera.flyToCloud(cloud.id)}>
+                <button class="name" title=${this.text('clouds.showAll')} @click=${() => void this.model.camera.flyToCloud(cloud.id)}>
                     ${cloud.name}
                 </button>
                 ${cloud.stage === 'failed'
                     ? html`<small>${cloud.error?.sentence}</small>`
                     : html`<small title=${cloud.crs ?? ''}>${this.describe(cloud)}</small>`}
             </div>
-            <button class="close" aria-label=${`Close ${cloud.name}`} @click=${() => this.model.close(cloud.id)}>
+            <button class="close" aria-label=${this.text('clouds.close', { name: cloud.name })} @click=${() => this.model.close(cloud.id)}>
                 ✕
             </button>
         </li>`;
     }
 
     private describe(cloud: CloudState): string {
-        if (cloud.stage === 'opening') return 'opening…';
-        return `${formatCount(cloud.pointCount ?? 0)} points${cloud.crs ? ` · ${cloud.crs}` : ''}`;
+        if (cloud.stage === 'opening') return this.text('clouds.opening');
+        const count = cloud.pointCount ?? 0;
+        return `${this.points(count, this.texts.count(count))}${cloud.crs ? ` · ${cloud.crs}` : ''}`;
+    }
+    private points(count: number, shown: string): string {
+        return this.text('page.points', { count, shown });
     }
 
     private pick(event: Event): void {

@@ -1,34 +1,27 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { messageOf } from '../messages.ts';
 import type { CloudClass, ColourMode, Style } from '../wasm/values.ts';
 import { select } from './fields.ts';
-import { formatCompact, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
-const gradients: [Style['gradient'], string][] = [
-    // Lightness rises all the way in the first three.
-    ['viridis', 'Viridis (colour-blind safe)'],
-    ['inferno', 'Inferno (colour-blind safe)'],
-    ['grey', 'Grey (colour-blind safe)'],
-    ['turbo', 'Turbo'],
-    ['spectral', 'Spectral'],
-    ['terrain', 'Terrain'],
-];
+const gradients: Style['gradient'][] = ['viridis', 'inferno', 'grey', 'turbo', 'spectral', 'terrain'];
+/** Lightness rises all the way in these. */
+const safeGradients = new Set<Style['gradient']>(['viridis', 'inferno', 'grey']);
 
 /** The attribute that a mode needs; modes without one any cloud has. */
-const modes: [ColourMode, string, string?][] = [
-    ['rgb', 'RGB'],
-    ['intensity', 'Intensity', 'Intensity'],
-    ['elevation', 'Elevation'],
-    ['classification', 'Classification', 'Classification'],
-    ['returnNumber', 'Return number', 'Return Number'],
-    ['numberOfReturns', 'Number of returns', 'Number of Returns'],
-    ['pointSourceId', 'Point source', 'Point Source ID'],
-    ['gpsTime', 'GPS time', 'GPS Time'],
-    ['level', 'Level of the octree'],
-    ['attribute', 'Any attribute'],
-    ['mix', 'Colour and intensity'],
+const modes: [ColourMode, string?][] = [
+    ['rgb'],
+    ['intensity', 'Intensity'],
+    ['elevation'],
+    ['classification', 'Classification'],
+    ['returnNumber', 'Return Number'],
+    ['numberOfReturns', 'Number of Returns'],
+    ['pointSourceId', 'Point Source ID'],
+    ['gpsTime', 'GPS Time'],
+    ['level'],
+    ['attribute'],
+    ['mix'],
 ];
 
 type RangeField = 'intensityRange' | 'elevationRange' | 'levelRange' | 'attributeRange';
@@ -121,19 +114,19 @@ export class ColourPanel extends ModelElement {
         const { style } = this.model;
         const attributes = this.attributeNames;
         const offered = modes.filter(
-            ([mode, , needed]) => mode === style.colourMode || needed === undefined || attributes.includes(needed),
+            ([mode, needed]) => mode === style.colourMode || needed === undefined || attributes.includes(needed),
         );
         return html`<fieldset>
-            <legend>Colour</legend>
+            <legend>${this.text('colour')}</legend>
             ${select(
-                'Colour by',
+                this.text('colour.by'),
                 style.colourMode,
-                offered.map(([mode, text]): [ColourMode, string] => [mode, text]),
+                offered.map(([mode]): [ColourMode, string] => [mode, this.text(`colour.${mode}`)]),
                 (colourMode) => this.changeMode(colourMode),
             )}
             ${style.colourMode === 'attribute'
                 ? select(
-                      'Attribute',
+                      this.text('colour.attributeName'),
                       style.attribute,
                       attributes.map((name): [string, string] => [name, name]),
                       (attribute) => this.model.changeStyle({ attribute, attributeRange: null }),
@@ -141,12 +134,15 @@ export class ColourPanel extends ModelElement {
                 : ''}
             ${style.colourMode === 'rgb' || style.colourMode === 'classification'
                 ? ''
-                : select('Gradient', style.gradient, gradients, (gradient) =>
-                      this.model.changeStyle({ gradient }),
+                : select(
+                      this.text('colour.gradient'),
+                      style.gradient,
+                      gradients.map((gradient) => [gradient, this.nameOf(gradient)]),
+                      (gradient) => this.model.changeStyle({ gradient }),
                   )}
             ${this.renderRange()}
             <label class="row">
-                <span>Background</span>
+                <span>${this.text('colour.background')}</span>
                 <input
                     class="colour"
                     type="color"
@@ -158,6 +154,11 @@ export class ColourPanel extends ModelElement {
                 />
             </label>
         </fieldset>`;
+    }
+
+    private nameOf(gradient: Style['gradient']): string {
+        const name = this.text(`gradient.${gradient}`);
+        return safeGradients.has(gradient) ? this.text('gradient.safe', { name }) : name;
     }
 
     private changeMode(colourMode: ColourMode): void {
@@ -180,7 +181,7 @@ export class ColourPanel extends ModelElement {
         const field = rangeFields[style.colourMode];
         if (!field) return '';
         const range = style[field];
-        return this.renderLimits('Range', range?.[0], range?.[1], (min, max) => {
+        return this.renderLimits(this.text('colour.range'), range?.[0], range?.[1], (min, max) => {
             if (min === undefined && max === undefined) this.model.changeStyle({ [field]: null });
             else if (min !== undefined && max !== undefined) this.model.changeStyle({ [field]: [min, max] });
         });
@@ -196,7 +197,7 @@ export class ColourPanel extends ModelElement {
             html`<input
                 type="number"
                 step="any"
-                aria-label=${`${label}: ${name}`}
+                aria-label=${this.text('colour.fieldOf', { label, field: name })}
                 placeholder=${name}
                 .value=${value === undefined ? '' : String(value)}
                 @change=${(event: Event) => {
@@ -208,7 +209,7 @@ export class ColourPanel extends ModelElement {
             />`;
         return html`<div class="row">
             <span>${label}</span>
-            <div class="range">${input('least', min)}${input('greatest', max)}</div>
+            <div class="range">${input(this.text('colour.least'), min)}${input(this.text('colour.greatest'), max)}</div>
         </div>`;
     }
 
@@ -222,13 +223,14 @@ export class ColourPanel extends ModelElement {
             }
         if (classes.size < 2 && this.model.style.hiddenClasses.length === 0) return '';
         const hidden = new Set(this.model.style.hiddenClasses);
+        const nameOf = (one: CloudClass): string => this.texts.translated('class', one.name);
         const show = (value: number, isShown: boolean): void => {
             if (isShown) hidden.delete(value);
             else hidden.add(value);
             this.model.changeStyle({ hiddenClasses: [...hidden] });
         };
         return html`<fieldset>
-            <legend>Classes</legend>
+            <legend>${this.text('classes')}</legend>
             <ul>
                 ${[...classes.values()]
                     .sort((a, b) => a.class - b.class)
@@ -238,14 +240,14 @@ export class ColourPanel extends ModelElement {
                                 <label>
                                     <input
                                         type="checkbox"
-                                        aria-label=${`Class ${one.class}: ${one.name}`}
+                                        aria-label=${this.text('classes.label', { number: one.class, name: nameOf(one) })}
                                         .checked=${!hidden.has(one.class)}
                                         @change=${(event: Event) =>
                                             show(one.class, (event.target as HTMLInputElement).checked)}
                                     />
                                     <span class="swatch" style=${`background: rgb(${one.colour.join(',')})`}></span>
-                                    <span>${one.class} ${one.name}</span>
-                                    <span class="points">${formatCompact(one.points)}</span>
+                                    <span>${one.class} ${nameOf(one)}</span>
+                                    <span class="points">${this.texts.compact(one.points)}</span>
                                 </label>
                             </li>`,
                     )}
@@ -263,16 +265,19 @@ export class ColourPanel extends ModelElement {
                 filters: attribute === '' ? [] : [{ attribute, min: min ?? null, max: max ?? null }],
             });
         return html`<fieldset>
-            <legend>Filter</legend>
+            <legend>${this.text('filter')}</legend>
             ${select(
-                'Show by',
+                this.text('filter.by'),
                 filter?.attribute ?? '',
-                [['', 'All points'], ...attributes.map((name): [string, string] => [name, name])],
+                [['', this.text('filter.all')], ...attributes.map((name): [string, string] => [name, name])],
                 (attribute) => change(attribute),
             )}
             ${filter
-                ? this.renderLimits('From, to', filter.min ?? undefined, filter.max ?? undefined, (min, max) =>
-                      change(filter.attribute, min, max),
+                ? this.renderLimits(
+                      this.text('filter.fromTo'),
+                      filter.min ?? undefined,
+                      filter.max ?? undefined,
+                      (min, max) => change(filter.attribute, min, max),
                   )
                 : ''}
         </fieldset>`;
@@ -281,9 +286,9 @@ export class ColourPanel extends ModelElement {
     private renderClip(): TemplateResult {
         const { clipBoxes } = this.model.style;
         return html`<fieldset>
-            <legend>Clip boxes as JSON</legend>
+            <legend>${this.text('clip.json')}</legend>
             <textarea
-                aria-label="Clip boxes"
+                aria-label=${this.text('clip.jsonLabel')}
                 spellcheck="false"
                 placeholder='[{"mode": "hideOutside", "centre": [0, 0, 0], "halfSize": [1, 1, 1]}]'
                 .value=${clipBoxes.length > 0 ? JSON.stringify(clipBoxes) : ''}
@@ -296,7 +301,7 @@ export class ColourPanel extends ModelElement {
         try {
             this.model.changeStyle({ clipBoxes: text.trim() === '' ? [] : JSON.parse(text) });
         } catch (error) {
-            this.model.notify(`clip boxes: ${messageOf(error)}`);
+            this.model.notify(this.text('clip.jsonWrong', { reason: this.texts.sentenceOf(error) }));
         }
     }
 }

@@ -1,6 +1,6 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { formatBytes, formatCount, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 /** The counters of client/core/counters.hpp under their own names. */
@@ -34,8 +34,8 @@ export class CountersPanel extends ModelElement {
 
     override render(): TemplateResult {
         const { frame, session, gpuBytes, heapBytes, decodesPending } = this.model.counters;
-        return html`${this.renderList('Frame', frame)} ${this.renderList('Session', session)}
-        ${this.renderList('Memory', { gpuBytes, heapBytes, decodesPending })}`;
+        return html`${this.renderList(this.text('counters.frame'), frame)} ${this.renderList(this.text('counters.session'), session)}
+        ${this.renderList(this.text('counters.memory'), { gpuBytes, heapBytes, decodesPending })}`;
     }
 
     private renderList(title: string, counters: Record<string, number | boolean>): TemplateResult {
@@ -44,15 +44,15 @@ export class CountersPanel extends ModelElement {
                 ${Object.entries(counters).map(
                     ([name, value]) =>
                         html`<dt>${name}</dt>
-                            <dd data-counter=${name}>${shown(name, value)}</dd>`,
+                            <dd data-counter=${name}>${this.shown(name, value)}</dd>`,
                 )}
             </dl>`;
     }
-}
 
-function shown(name: string, value: number | boolean): string {
-    if (typeof value === 'boolean') return value ? 'yes' : 'no';
-    return /bytes/i.test(name) ? formatBytes(value) : formatCount(value);
+    private shown(name: string, value: number | boolean): string {
+        if (typeof value === 'boolean') return this.text(value ? 'page.yes' : 'page.no');
+        return /bytes/i.test(name) ? this.texts.bytes(value) : this.texts.count(value);
+    }
 }
 
 customElements.define('stipple-counters', CountersPanel);

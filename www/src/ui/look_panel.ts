@@ -2,13 +2,10 @@ import './colour_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
 
-import type { Style } from '../wasm/values.ts';
 import { choice, slider } from './fields.ts';
-import { formatCompact, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
-const spacingSize: [Style['sizeMode'], string] = ['spacing', 'Spacings'];
-const discShape: [Style['shape'], string] = ['disc', 'Disc'];
 
 /** How the clouds are looked at: view, points, colour, light. */
 export class LookPanel extends ModelElement {
@@ -42,49 +39,49 @@ export class LookPanel extends ModelElement {
     private renderView(): TemplateResult {
         const { model } = this;
         return html`<fieldset>
-            <legend>View</legend>
+            <legend>${this.text('view')}</legend>
             <div class="views">
-                <button @click=${() => model.camera.showView('top')}>Top</button>
-                <button @click=${() => model.camera.showView('front')}>Front</button>
-                <button @click=${() => model.camera.showView('side')}>Side</button>
-                <button @click=${() => model.camera.showView('iso')}>Iso</button>
-                <button title="Show all (F)" @click=${() => void model.camera.flyToCloud()}>All</button>
+                <button @click=${() => model.camera.showView('top')}>${this.text('view.top')}</button>
+                <button @click=${() => model.camera.showView('front')}>${this.text('view.front')}</button>
+                <button @click=${() => model.camera.showView('side')}>${this.text('view.side')}</button>
+                <button @click=${() => model.camera.showView('iso')}>${this.text('view.iso')}</button>
+                <button title=${this.text('view.allHint')} @click=${() => void model.camera.flyToCloud()}>${this.text('view.all')}</button>
                 <button
-                    title="Where the camera was before (U)"
+                    title=${this.text('view.backHint')}
                     ?disabled=${!model.camera.history.canGoBack}
                     @click=${() => model.camera.back()}
                 >
-                    Back
+                    ${this.text('view.back')}
                 </button>
                 <button
-                    title="Forth again (shift U)"
+                    title=${this.text('view.forthHint')}
                     ?disabled=${!model.camera.history.canGoForward}
                     @click=${() => model.camera.forward()}
                 >
-                    Forth
+                    ${this.text('view.forth')}
                 </button>
             </div>
             ${choice(
-                'Move',
+                this.text('view.move'),
                 'navigation',
                 model.navigator.mode,
                 [
-                    ['orbit', 'Orbit'],
-                    ['earth', 'Earth'],
-                    ['fly', 'Fly'],
+                    ['orbit', this.text('view.orbit')],
+                    ['earth', this.text('view.earth')],
+                    ['fly', this.text('view.fly')],
                 ],
                 (mode) => model.setNavigation(mode),
             )}
             ${model.navigator.mode === 'fly'
-                ? html`<p class="hint">W, A, S, D walk, E and Q rise and sink; the wheel makes it faster or slower while a key is held.</p>`
+                ? html`<p class="hint">${this.text('view.flyHint')}</p>`
                 : ''}
             ${choice(
-                'Projection',
+                this.text('view.projection'),
                 'projection',
                 model.projection,
                 [
-                    ['perspective', 'Persp.'],
-                    ['orthographic', 'Ortho.'],
+                    ['perspective', this.text('view.perspective')],
+                    ['orthographic', this.text('view.orthographic')],
                 ],
                 (projection) => model.camera.setProjection(projection),
             )}
@@ -95,28 +92,30 @@ export class LookPanel extends ModelElement {
         const { style, limits } = this.model;
         const isContinuous = style.detail.mode === 'continuous';
         return html`<fieldset>
-            <legend>Points</legend>
+            <legend>${this.text('points')}</legend>
             ${slider(
-                'Budget',
+                this.text('points.budget'),
                 limits.pointBudget,
                 { min: 1e4, max: 2e7, logarithmic: true, digits: 2 },
-                formatCompact(limits.pointBudget),
+                this.texts.compact(limits.pointBudget),
                 (pointBudget) => this.model.changeLimits({ pointBudget }),
             )}
             ${slider(
-                'Frame time',
+                this.text('points.frameTime'),
                 Math.max(limits.frameMilliseconds, 1),
                 { min: 1, max: 200, logarithmic: true, digits: 2 },
-                limits.frameMilliseconds > 0 ? `${Math.round(limits.frameMilliseconds)} ms` : 'any',
+                limits.frameMilliseconds > 0
+                    ? this.text('points.milliseconds', { value: Math.round(limits.frameMilliseconds) })
+                    : this.text('points.anyTime'),
                 (milliseconds) => this.model.changeLimits({ frameMilliseconds: milliseconds < 2 ? 0 : milliseconds }),
             )}
             ${choice(
-                'Detail',
+                this.text('points.detail'),
                 'detail',
                 style.detail.mode,
                 [
-                    ['discrete', 'Levels'],
-                    ['continuous', 'Continuous'],
+                    ['discrete', this.text('points.levels')],
+                    ['continuous', this.text('points.continuous')],
                 ],
                 (mode) =>
                     this.model.changeStyle({
@@ -127,55 +126,45 @@ export class LookPanel extends ModelElement {
             )}
             ${isContinuous
                 ? slider(
-                      'Spacing',
+                      this.text('points.spacing'),
                       style.detail.spacingPixels,
                       { min: 0.5, max: 10, logarithmic: true, digits: 2 },
-                      `${style.detail.spacingPixels} px`,
+                      this.pixels(style.detail.spacingPixels),
                       (spacingPixels) => this.model.changeStyle({ detail: { ...style.detail, spacingPixels } }),
                   )
                 : ''}
             ${choice(
-                'Size in',
+                this.text('points.sizeIn'),
                 'size-mode',
                 style.sizeMode,
-                [
-                    ['fixed', 'Pixels'],
-                    ['world', 'World'],
-                    ['adaptive', 'Octree'],
-                    ...(isContinuous ? [spacingSize] : []),
-                ],
+                (['fixed', 'world', 'adaptive', 'spacing'] as const)
+                    .filter((mode) => mode !== 'spacing' || isContinuous)
+                    .map((mode) => [mode, this.text(mode === 'spacing' ? 'points.spacings' : `points.${mode}`)]),
                 (sizeMode) => this.model.changeStyle({ sizeMode }),
             )}
             ${this.renderSize()}
             ${choice(
-                'Shape',
+                this.text('points.shape'),
                 'shape',
                 style.shape,
-                [
-                    ['circle', 'Circle'],
-                    ['square', 'Square'],
-                    ['paraboloid', 'Parab.'],
-                    ...(this.canDrawDiscs() ? [discShape] : []),
-                ],
+                (['circle', 'square', 'paraboloid', 'disc'] as const)
+                    .filter((shape) => shape !== 'disc' || this.canDrawDiscs())
+                    .map((shape) => [shape, this.text(`points.${shape}`)]),
                 (shape) => this.model.changeStyle({ shape }),
             )}
             ${choice(
-                'Expand late',
+                this.text('points.expandLate'),
                 'delayed-expansion',
                 style.delayedExpansion,
-                [
-                    ['off', 'Off'],
-                    ['auto', 'Auto'],
-                    ['on', 'On'],
-                ],
+                (['off', 'auto', 'on'] as const).map((mode) => [mode, this.text(`points.${mode}`)]),
                 (delayedExpansion) => this.model.changeStyle({ delayedExpansion }),
             )}
             <label class="row">
-                <span>Blend</span>
+                <span>${this.text('points.blend')}</span>
                 <span>
                     <input
                         type="checkbox"
-                        aria-label="High-quality splats"
+                        aria-label=${this.text('points.splats')}
                         .checked=${style.splats.enabled}
                         @change=${(event: Event) =>
                             this.model.changeStyle({
@@ -193,32 +182,36 @@ export class LookPanel extends ModelElement {
         return style.shape === 'disc' || clouds.some((cloud) => cloud.hasNormals === true);
     }
 
+    private pixels(value: number): string {
+        return this.text('points.pixels', { value: this.texts.number(value) });
+    }
+
     private renderSize(): TemplateResult {
         const { style } = this.model;
         switch (style.sizeMode) {
             case 'fixed':
                 return slider(
-                    'Size',
+                    this.text('points.size'),
                     style.sizePixels,
                     { min: 1, max: 20, logarithmic: true, digits: 2 },
-                    `${style.sizePixels} px`,
+                    this.pixels(style.sizePixels),
                     (sizePixels) => this.model.changeStyle({ sizePixels }),
                 );
             case 'world':
                 return slider(
-                    'Size',
+                    this.text('points.size'),
                     style.sizeWorld,
                     { min: 0.001, max: 10, logarithmic: true, digits: 2 },
-                    String(style.sizeWorld),
+                    this.texts.number(style.sizeWorld),
                     (sizeWorld) => this.model.changeStyle({ sizeWorld }),
                 );
             case 'spacing':
             case 'adaptive':
                 return slider(
-                    'Size',
+                    this.text('points.size'),
                     style.sizeSpacings,
                     { min: 0.5, max: 5, logarithmic: true, digits: 2 },
-                    `${style.sizeSpacings} ×`,
+                    `${this.texts.number(style.sizeSpacings)} ×`,
                     (sizeSpacings) => this.model.changeStyle({ sizeSpacings }),
                 );
         }
@@ -227,13 +220,13 @@ export class LookPanel extends ModelElement {
     private renderLight(): TemplateResult {
         const { edl } = this.model.style;
         return html`<fieldset>
-            <legend>Eye-dome lighting</legend>
+            <legend>${this.text('light')}</legend>
             <label class="row">
-                <span>Shade</span>
+                <span>${this.text('light.shade')}</span>
                 <span>
                     <input
                         type="checkbox"
-                        aria-label="Eye-dome lighting"
+                        aria-label=${this.text('light')}
                         .checked=${edl.enabled}
                         @change=${(event: Event) =>
                             this.model.changeStyle({
@@ -243,18 +236,18 @@ export class LookPanel extends ModelElement {
                 </span>
             </label>
             ${slider(
-                'Strength',
+                this.text('light.strength'),
                 edl.strength,
                 { min: 0, max: 2, digits: 2 },
-                String(edl.strength),
+                this.texts.number(edl.strength),
                 (strength) => this.model.changeStyle({ edl: { strength } }),
                 !edl.enabled,
             )}
             ${slider(
-                'Radius',
+                this.text('light.radius'),
                 edl.radiusPixels,
                 { min: 0.5, max: 5, digits: 2 },
-                `${edl.radiusPixels} px`,
+                this.pixels(edl.radiusPixels),
                 (radiusPixels) => this.model.changeStyle({ edl: { radiusPixels } }),
                 !edl.enabled,
             )}

@@ -87,7 +87,7 @@ export class MeasureOverlay extends OverlayElement {
 
     private renderLabel(item: Measurement, points: (Place | null)[]): SVGTemplateResult | string {
         const seen = points.filter((place): place is Place => place !== null);
-        const first = resultLines(item, this.model.measuring.unit)[0];
+        const first = resultLines(item, this.model.measuring.unit, this.texts)[0];
         if (!first || item.kind === 'point' || seen.length === 0) return '';
         const x = seen.reduce((sum, place) => sum + place.x, 0) / seen.length;
         const y = seen.reduce((sum, place) => sum + place.y, 0) / seen.length;

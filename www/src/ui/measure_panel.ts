@@ -126,21 +126,26 @@ export class MeasurePanel extends ModelElement {
     override render(): TemplateResult {
         const { measuring } = this;
         return html`<fieldset>
-            <legend>Measure</legend>
+            <legend>${this.text('measure')}</legend>
             <div class="tools">
                 ${kindsOfMeasurement.map(
-                    ({ kind, label }) =>
+                    ({ kind }) =>
                         html`<button
                             aria-pressed=${measuring.drawnKind === kind}
                             @click=${() => this.take(kind)}
                         >
-                            ${label}
+                            ${this.text(`measure.${kind}`)}
                         </button>`,
                 )}
             </div>
             ${this.renderHint()}
             ${measuring.items.length > 0
-                ? html`${select('Unit', measuring.unit, displayUnits, (unit) => measuring.setUnit(unit))}
+                ? html`${select(
+                          this.text('measure.unit'),
+                          measuring.unit,
+                          displayUnits.map((unit) => [unit, this.text(`unit.${unit}`)]),
+                          (unit) => measuring.setUnit(unit),
+                      )}
                       <ul>
                           ${measuring.items.map((item) => this.renderItem(item))}
                       </ul>
@@ -166,38 +171,38 @@ export class MeasurePanel extends ModelElement {
         const { points } = kindOf(kind);
         return html`<p class="hint" role="status">
             ${points === undefined
-                ? 'Click points; a double click or Enter ends, Backspace takes the last one back, Escape gives up.'
-                : `Click ${points === 1 ? 'a point' : `${points} points${kind === 'angle' ? ', the corner second' : ''}`}; Escape gives up.`}
+                ? this.text('measure.hintOpen')
+                : this.text(kind === 'angle' ? 'measure.hintAngle' : 'measure.hintPoints', { count: points })}
         </p>`;
     }
 
     private renderItem(item: Measurement): TemplateResult {
         const { measuring } = this;
-        const lines = resultLines(item, measuring.unit);
+        const lines = resultLines(item, measuring.unit, this.texts);
         return html`<li class=${item.hidden ? 'hidden' : ''} data-measurement=${item.kind}>
             <div class="head">
                 <input
-                    aria-label="Name"
+                    aria-label=${this.text('measure.name')}
                     .value=${item.name}
                     @change=${(event: Event) => measuring.rename(item, (event.target as HTMLInputElement).value)}
                 />
                 <button
                     aria-pressed=${item.hidden}
-                    aria-label=${`Hide ${item.name}`}
-                    title="Hide"
+                    aria-label=${this.text('measure.hideNamed', { name: item.name })}
+                    title=${this.text('measure.hide')}
                     @click=${() => measuring.setHidden(item, !item.hidden)}
                 >
                     ${item.hidden ? '◌' : '●'}
                 </button>
                 <button
-                    aria-label=${`Copy ${item.name}`}
+                    aria-label=${this.text('measure.copyNamed', { name: item.name })}
                     @click=${() => void this.copy(item)}
                 >
-                    Copy
+                    ${this.text('measure.copy')}
                 </button>
                 <button
-                    aria-label=${`Delete ${item.name}`}
-                    title="Delete"
+                    aria-label=${this.text('measure.deleteNamed', { name: item.name })}
+                    title=${this.text('measure.delete')}
                     @click=${() => measuring.remove(item)}
                 >
                     ✕
@@ -205,7 +210,7 @@ export class MeasurePanel extends ModelElement {
             </div>
             ${item.kind === 'distance' && item.answer
                 ? html`<button class="section" @click=${() => this.model.profile.open(item.points.map(({ position }) => position))}>
-                      Profile
+                      ${this.text('measure.profile')}
                   </button>`
                 : ''}
             ${item.error ? html`<p class="error" role="alert">${item.error}</p>` : ''}
@@ -214,24 +219,24 @@ export class MeasurePanel extends ModelElement {
                     ({ name, field, value, deviation }) =>
                         html`<dt>${name}</dt>
                             <dd data-field=${field}>
-                                ${value} ${deviation ? html`<small title="Standard deviation">± ${deviation}</small>` : ''}
+                                ${value} ${deviation ? html`<small title=${this.text('measure.deviation')}>± ${deviation}</small>` : ''}
                             </dd>`,
                 )}
             </dl>
             ${item.answer?.['crosses'] === true
-                ? html`<p class="error">Its edges cross: the areas of its loops are added and taken away.</p>`
+                ? html`<p class="error">${this.text('measure.crosses')}</p>`
                 : ''}
         </li>`;
     }
 
     private async copy(item: Measurement): Promise<void> {
-        const lines = resultLines(item, this.measuring.unit).map(
+        const lines = resultLines(item, this.measuring.unit, this.texts).map(
             ({ name, value, deviation }) => `${name}\t${value}${deviation ? `\t± ${deviation}` : ''}`,
         );
         try {
             await navigator.clipboard.writeText([item.name, ...lines].join('\n'));
         } catch {
-            this.model.notify('The browser does not let the page copy; select the text and copy it by hand.');
+            this.model.notify(this.text('measure.noCopy'));
         }
     }
 

@@ -1,6 +1,8 @@
 import { LitElement } from 'lit';
 
 import type { Model } from '../model.ts';
+import type { Key, Values } from '../texts/message.ts';
+import type { Texts } from '../texts/texts.ts';
 
 /** An element that shows the model, and shows it again when it changed. */
 export class ModelElement extends LitElement {
@@ -17,23 +19,12 @@ export class ModelElement extends LitElement {
         this.model.removeEventListener('change', this.refresh);
         super.disconnectedCallback();
     }
-}
 
-const count = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
-const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumSignificantDigits: 3 });
-
-export function formatCount(value: number): string {
-    return count.format(value);
-}
-export function formatCompact(value: number): string {
-    return compact.format(value);
-}
-export function formatBytes(value: number): string {
-    const units = ['B', 'KiB', 'MiB', 'GiB', 'TiB'];
-    let unit = 0;
-    while (value >= 1024 && unit < units.length - 1) {
-        value /= 1024;
-        unit++;
+    /** A message in the person's language. */
+    protected text<K extends Key>(key: K, ...values: Values<K>): string {
+        return this.texts.text(key, ...values);
     }
-    return `${value >= 100 || unit === 0 ? value.toFixed(0) : value.toFixed(1)} ${units[unit]}`;
+    protected get texts(): Texts {
+        return this.model.texts;
+    }
 }

@@ -42,22 +42,23 @@ export class PointPanel extends ModelElement {
         if (!picked) return '';
         const [x, y, z] = picked.position;
         return html`<header>
-                <h2>Point</h2>
-                <button class="quiet" aria-label="Close the point" @click=${() => this.model.picking.forget()}>✕</button>
+                <h2>${this.text('point')}</h2>
+                <button class="quiet" aria-label=${this.text('point.close')} @click=${() => this.model.picking.forget()}>✕</button>
             </header>
             <dl>
-                ${row('X', x)} ${row('Y', y)} ${row('Z', z)}
-                ${Object.entries(picked.values).map(([name, value]) => row(name, value))}
-                ${picked.crs ? row('CRS', picked.crs) : ''} ${row('Cloud', picked.cloudName)}
-                ${row('Node', `${picked.point.node}, ${picked.point.index}`)}
+                ${this.row('X', 'X', x)} ${this.row('Y', 'Y', y)} ${this.row('Z', 'Z', z)}
+                ${Object.entries(picked.values).map(([name, value]) => this.row(name, name, value))}
+                ${picked.crs ? this.row('CRS', this.text('point.crs'), picked.crs) : ''} ${this.row('Cloud', this.text('point.cloud'), picked.cloudName)}
+                ${this.row('Node', this.text('point.node'), `${picked.point.node}, ${picked.point.index}`)}
             </dl>`;
     }
-}
 
-function row(name: string, value: number | number[] | string): TemplateResult {
-    const text = Array.isArray(value) ? value.join(', ') : String(value);
-    return html`<dt>${name}</dt>
-        <dd data-value=${name}>${text}</dd>`;
+    private row(field: string, name: string, value: number | number[] | string): TemplateResult {
+        const shown = (one: number): string => this.texts.number(one);
+        const text = Array.isArray(value) ? value.map(shown).join(', ') : typeof value === 'number' ? shown(value) : value;
+        return html`<dt>${name}</dt>
+            <dd data-value=${field}>${text}</dd>`;
+    }
 }
 
 customElements.define('stipple-point', PointPanel);

@@ -2,7 +2,7 @@ import { css, html, type PropertyValues, svg, type SVGTemplateResult, type Templ
 
 import type { Profile } from '../profile/profile.ts';
 import { draw, fitted, margin, nearest, panned, type ProfileView, ticks, toPixels, toProfile, zoomed } from '../profile/profile_view.ts';
-import { formatCount, ModelElement } from './model_element.ts';
+import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const formats = ['laz', 'las', 'csv'];
@@ -129,44 +129,48 @@ export class ProfilePanel extends ModelElement {
 
     override render(): TemplateResult {
         const { profile } = this, { points } = profile;
-        const state = profile.isLoading ? 'loading…' : profile.isComplete ? 'complete' : 'thinned';
+        const state = this.text(
+            profile.isLoading ? 'profile.loading' : profile.isComplete ? 'profile.complete' : 'profile.thinned',
+        );
         return html`<div class="bar">
-                <h2>Profile</h2>
+                <h2>${this.text('profile')}</h2>
                 <label>
-                    Width
+                    ${this.text('profile.width')}
                     <input
                         type="number"
                         step="any"
                         min="0"
-                        aria-label="Width of the profile"
+                        aria-label=${this.text('profile.widthLabel')}
                         .value=${String(profile.width)}
                         @change=${(event: Event) => profile.setWidth((event.target as HTMLInputElement).valueAsNumber)}
                     />
                 </label>
                 <label>
-                    Exaggeration
+                    ${this.text('profile.exaggeration')}
                     <input
                         type="number"
                         step="0.5"
                         min="0.1"
                         max="100"
-                        aria-label="Exaggeration of heights"
+                        aria-label=${this.text('profile.exaggerationLabel')}
                         .value=${String(this.exaggeration)}
                         @change=${(event: Event) => this.exaggerate((event.target as HTMLInputElement).valueAsNumber)}
                     />
                 </label>
-                <button @click=${() => this.fit()}>Fit</button>
-                <span class="state" role="status" data-points=${points.count}>${formatCount(points.count)} points, ${state}</span>
+                <button @click=${() => this.fit()}>${this.text('profile.fit')}</button>
+                <span class="state" role="status" data-points=${points.count}>
+                    ${this.text('profile.state', { count: points.count, state })}
+                </span>
                 ${formats.flatMap((format) =>
                     profile
                         .addresses(format)
                         .map(
                             ({ name, href }) =>
-                                html`<a href=${href} download title=${`All points of ${name}`}>${format.toUpperCase()}</a>`,
+                                html`<a href=${href} download title=${this.text('profile.allPoints', { name })}>${format.toUpperCase()}</a>`,
                         ),
                 )}
                 <a href="" @click=${(event: Event) => this.savePicture(event)}>SVG</a>
-                <button class="quiet close" aria-label="Close the profile" @click=${() => profile.close()}>✕</button>
+                <button class="quiet close" aria-label=${this.text('profile.close')} @click=${() => profile.close()}>✕</button>
             </div>
             ${profile.error ? html`<p class="told error" role="alert">${profile.error}</p>` : ''}
             <div
@@ -250,12 +254,19 @@ export class ProfilePanel extends ModelElement {
     private tell(): string {
         const { points } = this.profile, at = this.hovered >= 0 ? this.hovered : this.marked;
         if (at < 0 || at >= points.count) return '';
-        const digits = (value: number): string => value.toFixed(3);
-        const place = `Station ${digits(points.station[at]!)}, height ${digits(points.height[at]!)}, offset ${digits(points.offset[at]!)}; X ${digits(points.x[at]!)}, Y ${digits(points.y[at]!)}`;
+        const digits = (value: number): string => this.texts.decimals(value, 3);
+        const place = this.text('profile.place', {
+            station: digits(points.station[at]!),
+            height: digits(points.height[at]!),
+            offset: digits(points.offset[at]!),
+            x: digits(points.x[at]!),
+            y: digits(points.y[at]!),
+        });
         if (this.marked < 0 || this.marked === at) return place;
         const along = points.station[at]! - points.station[this.marked]!;
         const up = points.height[at]! - points.height[this.marked]!;
-        return `${place}. From the marked point: ${digits(along)} along, ${digits(up)} up, ${digits(Math.hypot(along, up))} apart`;
+        const apart = digits(Math.hypot(along, up));
+        return this.text('profile.fromMarked', { place, along: digits(along), up: digits(up), apart });
     }
 
     private placeOf(event: MouseEvent): { x: number; y: number } {

@@ -1,6 +1,5 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { messageOf } from '../messages.ts';
 import { toFragment } from '../scene/share_link.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
@@ -47,16 +46,18 @@ export class ScenePanel extends ModelElement {
 
     override render(): TemplateResult {
         return html`<fieldset>
-            <legend>Scene</legend>
+            <legend>${this.text('scene')}</legend>
             <div class="ways">
-                <button @click=${() => this.save()}>Save</button>
-                <button @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#scene')!.click()}>Load</button>
-                <button @click=${() => void this.share()}>Link</button>
-                <button @click=${() => void this.picture()}>Picture</button>
+                <button @click=${() => this.save()}>${this.text('scene.save')}</button>
+                <button @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#scene')!.click()}>
+                    ${this.text('scene.load')}
+                </button>
+                <button @click=${() => void this.share()}>${this.text('scene.link')}</button>
+                <button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>
             </div>
             <input type="file" id="scene" accept=".json,application/json" @change=${this.load} />
             ${this.link
-                ? html`<input class="link" readonly aria-label="Link to this scene" .value=${this.link} @focus=${selectAll} />`
+                ? html`<input class="link" readonly aria-label=${this.text('scene.linkLabel')} .value=${this.link} @focus=${selectAll} />`
                 : ''}
         </fieldset>`;
     }
@@ -87,7 +88,7 @@ export class ScenePanel extends ModelElement {
         try {
             download(await this.model.surface.picture(), 'picture.png');
         } catch (error) {
-            this.model.notify(messageOf(error));
+            this.model.tell(error);
         }
     }
 }
