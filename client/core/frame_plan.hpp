@@ -76,13 +76,22 @@ struct DrawNode {
     bool shows(std::size_t point) const { return !paint || paint->shows(point); }
 };
 
+// A node that belongs in the picture but isn't drawn yet, or that is drawn with less than a third of what its
+// level adds (its place in a node's prefix is then nearer to the level above: continuous_detail.hpp).
+struct AwaitedNode {
+    std::uint32_t cloud = 0; // as DrawNode::cloud
+    NodeKey key;
+    friend bool operator==(const AwaitedNode&, const AwaitedNode&) = default;
+};
+
 struct FramePlan {
     int width = 0, height = 0; // pixels
     ViewTransform view;
     Style style;                 // ranges are resolved: min < max where the mode needs one
     double detailPixels = 0;     // continuous detail: the target spacing in pixels; 0: draw whole prefixes
     std::vector<DrawNode> nodes; // near to far or any order; the picture does not depend on it
-    FrameCounters counters;      // the renderer adds passesRun and passesSkipped
+    std::vector<AwaitedNode> awaited; // where points grow until they come (Style::growsWhileLoading)
+    FrameCounters counters;           // the renderer adds passesRun and passesSkipped
 };
 
 } // namespace stipple

@@ -143,6 +143,7 @@ Result<Style> detail::readStyle(const json& value, const Style& base) {
     fields.number("maxSizePixels", style.maxSizePixels, 0.01, 1000);
     if (style.minSizePixels > style.maxSizePixels)
         fields.fail("minSizePixels", "must not exceed maxSizePixels");
+    fields.flag("growsWhileLoading", style.growsWhileLoading);
     fields.choice("shape", style.shape, shapes);
     fields.choice("delayedExpansion", style.delayedExpansion, expansions);
     fields.object("splats", [&](FieldReader& splats) { readSplats(splats, style.splats); });
@@ -217,6 +218,7 @@ json toJson(const Style& style) {
                 {"sizeSpacings", style.sizeSpacings},
                 {"minSizePixels", style.minSizePixels},
                 {"maxSizePixels", style.maxSizePixels},
+                {"growsWhileLoading", style.growsWhileLoading},
                 {"shape", nameOf(shapes, style.shape)},
                 {"splats", splats},
                 {"delayedExpansion", nameOf(expansions, style.delayedExpansion)},

@@ -66,6 +66,10 @@ struct Style : ColourStyle {
     // adaptive.
     double sizeSpacings = 2;
     double minSizePixels = 1, maxSizePixels = 64;
+    // Modes fixed and spacing: where finer nodes that belong in the picture are still to come, points are
+    // twice as wide for each level that is missing there, so that no holes show until then. Never of a
+    // settled picture.
+    bool growsWhileLoading = true;
     PointShape shape = PointShape::circle;
     Splats splats;
     DelayedExpansion delayedExpansion = DelayedExpansion::off;

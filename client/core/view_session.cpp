@@ -413,10 +413,34 @@ class Session final : public ViewSession {
             next.counters.pointsHidden += cached->paint ? cached->paint->hidden : 0;
             next.counters.nodesExact += exact;
         }
+        next.awaited = awaitedNodes();
         bool differs = !drawnOnce_ || !samePicture(next, plan_);
         drawnOnce_ = true;
         plan_ = std::move(next);
         return differs;
+    }
+
+    // Selected nodes that are not here, or with too little of what is to show of them to count as their
+    // level; and the children that a chunk on its way is to bring.
+    std::vector<AwaitedNode> awaitedNodes() const {
+        std::vector<AwaitedNode> awaited;
+        if (!style_.growsWhileLoading)
+            return awaited;
+        for (const SelectedNode& selected : selection_.nodes) {
+            const CloudLoader& cloud = loading_.clouds().at(selectionIds_[selected.cloud]);
+            const NodeEntry& entry = cloud.hierarchy.node(selected.node).entry;
+            std::uint32_t level =
+                (entry.pointCount + 2) / 3; // so many points are nearer to it than to the one above
+            if (selected.drawPoints < level && selected.points >= level &&
+                !cloud.residency[selected.node].failed)
+                awaited.push_back({cloud.state.id, entry.key});
+        }
+        for (const WantedChunk& chunk : selection_.chunks) {
+            const CloudLoader& cloud = loading_.clouds().at(selectionIds_[chunk.cloud]);
+            for (int child = 0; child < 8; ++child)
+                awaited.push_back({cloud.state.id, cloud.hierarchy.node(chunk.node).entry.key.child(child)});
+        }
+        return awaited;
     }
 
     static bool samePicture(const FramePlan& a, const FramePlan& b) {
@@ -425,7 +449,7 @@ class Session final : public ViewSession {
                    x.pointCount == y.pointCount;
         };
         return a.width == b.width && a.height == b.height && a.view == b.view && a.style == b.style &&
-               a.detailPixels == b.detailPixels &&
+               a.detailPixels == b.detailPixels && a.awaited == b.awaited &&
                std::equal(a.nodes.begin(), a.nodes.end(), b.nodes.begin(), b.nodes.end(), sameNode);
     }
 

@@ -39,17 +39,21 @@ void connect(Nodes& nodes, const Place& place, std::vector<Place>& chain) {
     }
 }
 
-// Drawn nodes and those between them, each knowing its children.
+// Drawn and awaited nodes and those between them, each knowing its children.
 Nodes connectedNodes(const FramePlan& plan) {
     Nodes nodes;
-    nodes.reserve(2 * plan.nodes.size());
-    std::vector<Place> drawn, chain;
+    nodes.reserve(2 * (plan.nodes.size() + plan.awaited.size()));
+    std::vector<Place> places, chain;
     for (const DrawNode& node : plan.nodes)
         if (node.node && node.pointCount > 0) {
-            drawn.push_back({node.cloud, node.node->key});
-            nodes[drawn.back()].drawn = true;
+            places.push_back({node.cloud, node.node->key});
+            nodes[places.back()].drawn = true;
         }
-    for (const Place& place : drawn)
+    for (const AwaitedNode& node : plan.awaited) {
+        places.push_back({node.cloud, node.key});
+        nodes[places.back()].drawn = false;
+    }
+    for (const Place& place : places)
         connect(nodes, place, chain);
     for (auto& [place, known] : nodes)
         if (place.key.level > 0)

@@ -7,9 +7,9 @@
 //
 //   word   firstChild << 9 | drawn << 8 | children      children: bit i is set where child i is there
 //
-// Child i is at firstChild + (number of bits of `children` below bit i). Nodes that are not drawn are there
-// only where they lie between two that are (drawn 0). In OpenGL ES the words are an R32UI texture,
-// octreeTextureWidth wide, row by row.
+// Child i is at firstChild + (number of bits of `children` below bit i). Nodes that are not drawn (drawn 0)
+// are there where they are awaited (FramePlan::awaited), or lie between two others. In OpenGL ES the words
+// are an R32UI texture, octreeTextureWidth wide, row by row.
 #pragma once
 
 #include "client/core/frame_plan.hpp"
@@ -33,12 +33,16 @@ struct DrawnOctree {
 };
 DrawnOctree drawnOctree(const FramePlan& plan);
 
-// How many levels below the node at `place`, 2^nodeBits grid steps wide, the deepest drawn node lies that
-// holds the point (x, y, z), in-node grid integers. 0: the node itself.
-inline int levelsBelow(const std::uint32_t* words, std::uint32_t place, int nodeBits, std::uint32_t x,
-                       std::uint32_t y, std::uint32_t z) {
-    int found = 0;
+// The walk from the node at `place`, 2^nodeBits grid steps wide, down to the deepest node that holds the
+// point (x, y, z), in-node grid integers. Levels below that node:
+struct OctreeWalk {
+    int drawn = 0;   // of the deepest drawn one; 0: the node itself; -1: nor is that, it is awaited
+    int deepest = 0; // of the deepest, drawn or awaited
+};
+inline OctreeWalk walkOctree(const std::uint32_t* words, std::uint32_t place, int nodeBits, std::uint32_t x,
+                             std::uint32_t y, std::uint32_t z) {
     std::uint32_t word = words[place];
+    OctreeWalk walk{(word & drawnBit) != 0 ? 0 : -1, 0};
     for (int depth = 1; depth <= nodeBits && (word & 255u) != 0; ++depth) {
         int bit = nodeBits - depth;
         std::uint32_t octant = (x >> bit & 1u) | (y >> bit & 1u) << 1 | (z >> bit & 1u) << 2;
@@ -47,10 +51,16 @@ inline int levelsBelow(const std::uint32_t* words, std::uint32_t place, int node
         place = (word >> firstChildShift) +
                 static_cast<std::uint32_t>(std::popcount(word & ((1u << octant) - 1u)));
         word = words[place];
+        walk.deepest = depth;
         if ((word & drawnBit) != 0)
-            found = depth;
+            walk.drawn = depth;
     }
-    return found;
+    return walk;
+}
+
+inline int levelsBelow(const std::uint32_t* words, std::uint32_t place, int nodeBits, std::uint32_t x,
+                       std::uint32_t y, std::uint32_t z) {
+    return walkOctree(words, place, nodeBits, x, y, z).drawn;
 }
 
 } // namespace stipple

@@ -1,4 +1,4 @@
-// The octree of the drawn nodes as a texture (drawn_octree.hpp), for adaptive sizes.
+// The octree of the drawn nodes as a texture (drawn_octree.hpp), for sizes that depend on it.
 #pragma once
 
 #include "client/render/drawn_octree.hpp"

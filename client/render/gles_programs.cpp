@@ -19,8 +19,10 @@ std::string definesFor(const PointVariant& variant) {
     defines += variant.blend ? "#define BLEND\n" : "";
     defines += variant.identity ? "#define IDENTITY\n" : "";
     defines += variant.captureLevels ? "#define CAPTURE_LEVELS\n" : "";
-    if (variant.adaptive)
-        defines += cat("#define ADAPTIVE\n#define OCTREE_WIDTH ", octreeTextureWidth, "\n");
+    defines += variant.adaptive ? "#define ADAPTIVE\n" : "";
+    defines += variant.growing ? cat("#define GROWING\n#define MAX_DOUBLINGS ", maxDoublings, "\n") : "";
+    if (variant.walksOctree())
+        defines += cat("#define OCTREE_WIDTH ", octreeTextureWidth, "\n");
     return defines;
 }
 
@@ -33,6 +35,7 @@ PointVariant PointVariant::of(const RasterFrame& frame, const DrawNode& node) {
     variant.circle = frame.circle && !variant.disc;
     variant.paraboloid = frame.paraboloid;
     variant.adaptive = frame.adaptive;
+    variant.growing = frame.growing;
     return variant;
 }
 
@@ -46,7 +49,7 @@ Result<const PointProgram*> PointPrograms::get(const PointVariant& variant) {
 }
 
 Result<PointProgram> PointProgram::make(const PointVariant& variant) {
-    std::string vertex = cat(variant.adaptive ? shader_texts::octree : "", shader_texts::sprite,
+    std::string vertex = cat(variant.walksOctree() ? shader_texts::octree : "", shader_texts::sprite,
                              variant.expand ? shader_texts::expandVertex : shader_texts::pointsVertex);
     STIPPLE_TRY(program, makeProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
                                      variant.captureLevels ? "vLevels" : nullptr));

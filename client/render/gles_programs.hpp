@@ -18,12 +18,14 @@ struct PointVariant {
     bool disc = false;       // never circle
     bool normals = false;    // looks at normals: discs, and what collects for them
     bool adaptive = false;
+    bool growing = false;       // never adaptive
     bool blend = false;         // the pass of splats that blends
     bool collect = false;       // the first pass of delayed expansion
     bool expand = false;        // the second: expand.vert.glsl
     bool captureLevels = false; // adaptive; vLevels goes to transform feedback
     bool identity = false;      // writes which point a pixel shows (client/render/pick.hpp), not its colour
 
+    bool walksOctree() const { return adaptive || growing; }
     friend auto operator<=>(const PointVariant&, const PointVariant&) = default;
     static PointVariant of(const RasterFrame& frame, const DrawNode& node);
 };

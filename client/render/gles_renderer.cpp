@@ -158,8 +158,7 @@ class Gles3Renderer final : public GlesRenderer {
 
     std::string limitationOf(const RasterFrame& frame, bool blends) const {
         std::string told(frame.splats && !blends ? withoutFloats : "");
-        bool sized = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
-        int largest = ((sized ? frame.maxSize64 : frame.size64) + sizeSteps - 1) / sizeSteps;
+        int largest = ((sizesDiffer(frame) ? frame.maxSize64 : frame.size64) + sizeSteps - 1) / sizeSteps;
         if (frame.disc && frame.perspective) // what leans towards the eye is seen larger
             largest = maxPointPixels;
         if (largest > pointPixels_)
@@ -297,7 +296,7 @@ class Gles3Renderer final : public GlesRenderer {
     // The points of those nodes, into what is bound.
     Status drawNodes(const FramePlan& plan, const RasterFrame& frame, const std::vector<std::size_t>& order,
                      const Drawing& how) {
-        if (frame.adaptive)
+        if (walksOctree(frame))
             octree_.load(plan);
         else
             octree_.clear();
@@ -326,7 +325,7 @@ class Gles3Renderer final : public GlesRenderer {
             if (how.identities)
                 program->setIdentity(static_cast<std::uint32_t>(place), how.identities->left,
                                      how.identities->bottom);
-            if (frame.adaptive)
+            if (walksOctree(frame))
                 program->setOctreePlace(octree_.placeOf(index), *node.node);
             glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(node.pointCount));
         }

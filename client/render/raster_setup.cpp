@@ -143,8 +143,9 @@ RasterFrame rasterFrame(const FramePlan& plan) {
     frame.blendFactor = static_cast<float>(style.splats.depthFactor);
     setDetail(plan, frame);
     frame.adaptive = style.sizeMode == PointSizeMode::adaptive;
-    bool sizesDiffer = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
-    bool singlePixels = (sizesDiffer ? frame.maxSize64 : frame.size64) == sizeSteps;
+    frame.growing = style.growsWhileLoading && !plan.awaited.empty() && !frame.adaptive &&
+                    style.sizeMode != PointSizeMode::world && frame.maxSize64 > frame.size64;
+    bool singlePixels = (sizesDiffer(frame) ? frame.maxSize64 : frame.size64) == sizeSteps;
     frame.circle = style.shape != PointShape::square && !singlePixels;
     frame.paraboloid = style.shape == PointShape::paraboloid && frame.circle && !frame.splats;
     frame.disc = style.shape == PointShape::disc && frame.circle;
@@ -154,8 +155,7 @@ RasterFrame rasterFrame(const FramePlan& plan) {
 }
 
 bool expandsLate(const FramePlan& plan, const RasterFrame& frame, const ExpansionCosts& costs) {
-    bool sized = frame.sizeByDistance || frame.sizeByDensity || frame.adaptive;
-    if ((sized ? frame.maxSize64 : frame.size64) == sizeSteps)
+    if ((sizesDiffer(frame) ? frame.maxSize64 : frame.size64) == sizeSteps)
         return false;
     if (plan.style.delayedExpansion != DelayedExpansion::automatic)
         return plan.style.delayedExpansion == DelayedExpansion::on;
@@ -168,7 +168,8 @@ bool expandsLate(const FramePlan& plan, const RasterFrame& frame, const Expansio
 RasterFrame singlePixelFrame(const RasterFrame& frame) {
     RasterFrame single = frame;
     single.size64 = sizeSteps;
-    single.sizeByDistance = single.sizeByDensity = single.adaptive = single.circle = single.splats = false;
+    single.sizeByDistance = single.sizeByDensity = single.adaptive = single.growing = single.circle =
+        single.splats = false;
     single.paraboloid = single.disc = false;
     return single;
 }

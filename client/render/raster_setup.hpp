@@ -28,6 +28,11 @@
 // Adaptive   sizes come from the spacing of the finest drawn node where the point lies, k levels below its
 // own
 //            (drawn_octree.hpp): size64 = clamp(nodeSize64 · 2^-k / d + 0.5)     orthographic: without "/ d"
+// Growing    the same walk while nodes are awaited (FramePlan::awaited), where sizes don't come from
+// elsewhere:
+//              size64 = clamp(nodeSize64 · 2^-k / d, size64, size64 · 2^g)      orthographic: without "/ d"
+//            with g awaited levels below that node, at most maxDoublings: as wide as the points are apart
+//            there, until more come
 // Coverage   a pixel is covered if its centre lies inside the square or circle; the pixel that holds the
 //            point is covered always, so that no point vanishes between pixel centres.
 // Colour     DrawNode::colourWords(); points whose word has no alpha are hidden (DrawNode::shows).
@@ -70,6 +75,7 @@ inline constexpr int positionCells = 128; // cells a pixel, per axis
 inline constexpr int sizeSteps = 64;      // size steps a pixel
 inline constexpr int depthBits = 24;
 inline constexpr int maxPointPixels = 255; // any larger maximum size is clamped to this
+inline constexpr int maxDoublings = 3;     // "Growing"; larger points hide more of the picture than they fill
 inline constexpr int maxPictureSide = 16384;
 // Positions are clamped to this before they become integers; no size reaches back from there.
 inline constexpr float positionLimit = 32768;
@@ -101,6 +107,7 @@ struct RasterFrame {
     float worldSize64 = 0;       // 1/64 pixel at distance 1
     int minSize64 = 64, maxSize64 = 64;
     bool adaptive = false;   // see "Adaptive"; size64 does not matter
+    bool growing = false;    // see "Growing"; never with adaptive or sizeByDistance
     bool circle = false;     // false where every point is a single pixel
     float radiusScale = 0;   // half the size in world units, per 1/64 pixel; at distance 1 in perspective
     bool paraboloid = false; // circle, too; never with splats
@@ -131,6 +138,15 @@ struct RasterNode {
     float rankBase = 0, rankStep = 0; // see "Detail"
     float nodeSize64 = 0;             // see "Adaptive"; 1/64 pixel, at distance 1 in perspective
 };
+
+// Whether points can be of different sizes.
+inline bool sizesDiffer(const RasterFrame& frame) {
+    return frame.sizeByDistance || frame.sizeByDensity || frame.adaptive || frame.growing;
+}
+// Whether sizes need the octree of the drawn nodes.
+inline bool walksOctree(const RasterFrame& frame) {
+    return frame.adaptive || frame.growing;
+}
 
 // The view distance at which a depth step begins.
 inline float distanceOfStep(const RasterFrame& frame, std::uint32_t step) {

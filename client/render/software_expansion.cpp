@@ -89,7 +89,7 @@ void visitCentres(const RasterFrame& frame, const Centres& centres, RowRange row
             const std::uint32_t* pixels = covered.pixels.data() + at;
             gathered.take(placed, centres.cells, pixels, count);
             Words words = gathered.words(placed);
-            if (sizing == Sizing::adaptive)
+            if (walksOctree(frame))
                 fillFineness(centres.octree, placed.octreePlace, *placed.draw->node, words, count, block);
             transformFor(frame, placed.raster, sizing)(frame, placed.raster, words, count, block);
             visit(placed, block, count, pixels, gathered);

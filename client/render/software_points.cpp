@@ -87,7 +87,7 @@ void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t c
 template <bool Shared, class Indices>
 void placeSprites(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                   std::uint64_t* cells) {
-    const bool sized = sizesDiffer(frame);
+    const bool sized = hasSizes(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
@@ -100,7 +100,7 @@ void placeSprites(const RasterFrame& frame, const Block& block, std::size_t coun
 template <bool Shared, class Indices>
 void placeParaboloids(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                       std::uint64_t* cells) {
-    const bool sized = sizesDiffer(frame);
+    const bool sized = hasSizes(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
@@ -117,7 +117,7 @@ void placeParaboloids(const RasterFrame& frame, const Block& block, std::size_t 
 template <bool Shared, class Indices>
 void placeDiscs(const RasterFrame& frame, const Block& block, std::size_t count, const Indices& index,
                 const std::uint32_t* normals, std::uint64_t* cells) {
-    const bool sized = sizesDiffer(frame);
+    const bool sized = hasSizes(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
@@ -157,7 +157,7 @@ void placeBlock(const RasterFrame& frame, const Block& block, std::size_t count,
         placeDiscs<Shared>(frame, block, count, index, normals, cells);
     else if (frame.paraboloid)
         placeParaboloids<Shared>(frame, block, count, index, cells);
-    else if (sizesDiffer(frame))
+    else if (hasSizes(frame))
         placeSprites<Shared>(frame, block, count, index, cells);
     else
         placeFixed<Shared>(frame, block, count, index, cells);
@@ -182,7 +182,7 @@ void drawRunImpl(const RasterFrame& frame, const PointRun& run, std::uint64_t* c
 void fillBlock(const RasterFrame& frame, const PointRun& run, std::size_t done, std::size_t count,
                Sizing sizing, Block& block) {
     Words words = wordsFrom(*run.node, run.first + done);
-    if (sizing == Sizing::adaptive)
+    if (sizing == Sizing::adaptive || sizing == Sizing::growing)
         fillFineness(run.octree, run.place, *run.node, words, count, block);
     transformFor(frame, *run.raster, sizing)(frame, *run.raster, words, count, block);
     if (run.hiding)

@@ -158,12 +158,12 @@ class CellRenderer final : public SoftwareRenderer {
     void placeNodes(const FramePlan& plan, const std::vector<std::size_t>& order) {
         if (!frame_.splats)
             sums_.clear();
-        octree_ = frame_.adaptive ? drawnOctree(plan) : DrawnOctree();
+        octree_ = walksOctree(frame_) ? drawnOctree(plan) : DrawnOctree();
         nodes_.clear();
         std::uint64_t index = 0;
         for (std::size_t i : order) {
             nodes_.push_back({&plan.nodes[i], rasterNode(plan, plan.nodes[i]), index,
-                              frame_.adaptive ? octree_.places[i] : 0});
+                              walksOctree(frame_) ? octree_.places[i] : 0});
             index += plan.nodes[i].pointCount;
         }
     }

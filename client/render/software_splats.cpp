@@ -30,7 +30,7 @@ namespace {
 
 void blendDiscs(const RasterFrame& frame, const Block& block, std::size_t count, const std::uint32_t* colours,
                 const std::uint32_t* normals, const std::uint64_t* cells, PixelSums* sums) {
-    const bool sized = sizesDiffer(frame);
+    const bool sized = hasSizes(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;
@@ -52,7 +52,7 @@ void blendBlock(const RasterFrame& frame, const Block& block, std::size_t count,
                 const std::uint32_t* normals, const std::uint64_t* cells, PixelSums* sums) {
     if (frame.disc && normals)
         return blendDiscs(frame, block, count, colours, normals, cells, sums);
-    const bool sized = sizesDiffer(frame);
+    const bool sized = hasSizes(frame);
     for (std::size_t i = 0; i < count; ++i) {
         if (block.x[i] == nowhere)
             continue;

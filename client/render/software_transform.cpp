@@ -31,6 +31,10 @@ STIPPLE_INLINE float clampFloat(float value, float low, float high) {
     return value > high ? high : value;
 }
 
+inline float powerOfTwo(int exponent) {
+    return floatOfBits(static_cast<std::uint32_t>(127 + exponent) << 23);
+}
+
 STIPPLE_INLINE std::uint32_t rankOf(const std::uint32_t* ranks, std::uint32_t first, std::size_t i) {
     return ranks != nullptr ? ranks[i] : first + static_cast<std::uint32_t>(i);
 }
@@ -170,9 +174,15 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
                 clampFloat(nodeSize64 * block.fineness[i] * scale + 0.5f, minSize64, maxSize64);
             block.size64[i] = static_cast<std::int32_t>(
                 Rank == Ranking::continuous ? clampFloat(size * grown, pixelSize64, maxSize64) : size);
-        } else if constexpr (Rank == Ranking::continuous && Size == Sizing::fixed) {
-            const float size =
+        } else if constexpr (Size == Sizing::growing ||
+                             (Rank == Ranking::continuous && Size == Sizing::fixed)) {
+            float size =
                 sizeByDensity ? clampFloat(fixedSize64 / density, minSize64, maxSize64) : fixedSize64;
+            if constexpr (Size == Sizing::growing) {
+                const float scale = Place == Placing::perspective ? 1.0f / d : 1.0f;
+                const float apart = nodeSize64 * block.fineness[i] * scale, most = size * block.doubling[i];
+                size = clampFloat(apart < most ? apart : most, size, maxSize64);
+            }
             block.size64[i] = static_cast<std::int32_t>(clampFloat(size * grown, pixelSize64, maxSize64));
         }
     }
@@ -223,6 +233,8 @@ Transform transformFor(const RasterFrame& frame, const RasterNode& node) {
 Sizing sizingOf(const RasterFrame& frame) {
     if (frame.adaptive)
         return Sizing::adaptive;
+    if (frame.growing)
+        return Sizing::growing;
     if (frame.sizeByDistance)
         return Sizing::byDistance;
     return frame.size64 == sizeSteps && !frame.sizeByDensity ? Sizing::single : Sizing::fixed;
@@ -231,7 +243,9 @@ Sizing sizingOf(const RasterFrame& frame) {
 void fillFineness(const std::uint32_t* octree, std::uint32_t place, const ResidentNode& node, Words words,
                   std::size_t count, Block& block) {
     if ((octree[place] & 255u) == 0) {
-        std::fill_n(block.fineness.begin(), count, 1.0f);
+        const float coarser = (octree[place] & drawnBit) != 0 ? 1.0f : 2.0f;
+        std::fill_n(block.fineness.begin(), count, coarser);
+        std::fill_n(block.doubling.begin(), count, coarser);
         return;
     }
     const int shift = node.positionShift;
@@ -241,8 +255,9 @@ void fillFineness(const std::uint32_t* octree, std::uint32_t place, const Reside
         if (words.low != nullptr)
             p = {(p.x << shift) | (words.low[i] & lowMask), (p.y << shift) | ((words.low[i] >> 10) & lowMask),
                  (p.z << shift) | ((words.low[i] >> 20) & lowMask)};
-        const int levels = levelsBelow(octree, place, node.nodeBits, p.x, p.y, p.z);
-        block.fineness[i] = floatOfBits(static_cast<std::uint32_t>(127 - levels) << 23);
+        const OctreeWalk walk = walkOctree(octree, place, node.nodeBits, p.x, p.y, p.z);
+        block.fineness[i] = powerOfTwo(-walk.drawn);
+        block.doubling[i] = powerOfTwo(std::min(walk.deepest - walk.drawn, maxDoublings));
     }
 }
 
@@ -254,6 +269,8 @@ Transform transformFor(const RasterFrame& frame, const RasterNode& node, Sizing 
         return transformFor<Sizing::byDistance>(frame, node);
     case Sizing::adaptive:
         return transformFor<Sizing::adaptive>(frame, node);
+    case Sizing::growing:
+        return transformFor<Sizing::growing>(frame, node);
     case Sizing::fixed:
         break;
     }

@@ -18,15 +18,16 @@ struct Block {
     alignas(64) std::array<std::int32_t, blockPoints> x, y, size64;
     alignas(64) std::array<std::uint32_t, blockPoints> step;
     alignas(64) std::array<std::uint32_t, blockPoints> pixel; // single pixels only
-    // Adaptive sizes: 2^-k (raster_setup.hpp, "Adaptive"); to be filled before the transform.
-    alignas(64) std::array<float, blockPoints> fineness;
+    // Sizes from the octree, to be filled before the transform: 2^-k (raster_setup.hpp, "Adaptive"); 2^g
+    // ("Growing").
+    alignas(64) std::array<float, blockPoints> fineness, doubling;
 };
 
-enum class Sizing { single, fixed, byDistance, adaptive };
+enum class Sizing { single, fixed, byDistance, adaptive, growing };
 Sizing sizingOf(const RasterFrame& frame);
 // Whether a block's size64 says how large its points are; else all are of RasterFrame::size64.
-inline bool sizesDiffer(const RasterFrame& frame) {
-    return frame.adaptive || frame.sizeByDistance || frame.continuous;
+inline bool hasSizes(const RasterFrame& frame) {
+    return sizesDiffer(frame) || frame.continuous;
 }
 
 struct Words {

@@ -17,18 +17,20 @@ int bitsIn(uint byte) {
     return int((nibbles + (nibbles >> 4)) & 15u);
 }
 
-// Levels below the point's own node; p: in-node grid integers.
-int levelsBelow(uvec3 p) {
-    int found = 0;
+// Levels below the point's own node: of the deepest drawn node that holds the point (-1: not even its own), and
+// of the deepest, drawn or awaited. p: in-node grid integers.
+ivec2 walkOctree(uvec3 p) {
     uint word = octreeWord(uOctreePlace);
+    ivec2 levels = ivec2((word & 256u) != 0u ? 0 : -1, 0);
     for (int depth = 1; depth <= uNodeBits && (word & 255u) != 0u; ++depth) {
         uvec3 halves = (p >> uint(uNodeBits - depth)) & 1u;
         uint octant = halves.x | halves.y << 1 | halves.z << 2;
         if ((word >> octant & 1u) == 0u)
             break;
         word = octreeWord(int(word >> 9) + bitsIn(word & ((1u << octant) - 1u)));
+        levels.y = depth;
         if ((word & 256u) != 0u)
-            found = depth;
+            levels.x = depth;
     }
-    return found;
+    return levels;
 }

@@ -1,7 +1,7 @@
 // One point of a node to a square of the window. The rules are those of client/render/raster_setup.hpp,
 // in the same order of operations as the software renderer.
-// Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE (with
-// the text of octree.glsl) for sizes from the octree; NORMALS where they are looked at; COLLECT for the first pass of delayed expansion; CAPTURE_LEVELS to
+// Before this text: that of sprite.glsl; defined: LOW_WORDS where the node has a third position word; ADAPTIVE or
+// GROWING (with the text of octree.glsl) for sizes from the octree; NORMALS where they are looked at; COLLECT for the first pass of delayed expansion; CAPTURE_LEVELS to
 // tell the level found there; IDENTITY where it is asked which point a pixel shows.
 precision highp float;
 precision highp int;
@@ -41,7 +41,7 @@ uniform float uGrowth;
 uniform vec2 uFalloff;
 uniform float uLeastDensity;
 uniform bool uSizeByDensity;
-#ifdef ADAPTIVE
+#if defined(ADAPTIVE) || defined(GROWING)
 uniform float uNodeSize64; // raster_setup.hpp, "Adaptive"
 #endif
 
@@ -92,10 +92,10 @@ void main() {
 #ifdef IDENTITY
     vPoint = uvec3(0u);
 #endif
-#ifdef ADAPTIVE
-    int levels = levelsBelow(p);
+#if defined(ADAPTIVE) || defined(GROWING)
+    ivec2 levels = walkOctree(p);
 #ifdef CAPTURE_LEVELS
-    vLevels = levels;
+    vLevels = levels.x;
 #endif
 #endif
     if (aColour.a == 0.0 || !(d >= uNearFar.x && d <= uNearFar.y)) {
@@ -123,13 +123,18 @@ void main() {
 
     float size64 = uSize64;
 #ifdef ADAPTIVE
-    float fineness = uintBitsToFloat(uint(127 - levels) << 23);
+    float fineness = uintBitsToFloat(uint(127 - levels.x) << 23);
     size64 = clamp(uNodeSize64 * fineness * scale + 0.5, uSizeRange64.x, uSizeRange64.y);
 #else
     if (uSizeByDistance)
         size64 = clamp(uWorldSize64 * inverse + 0.5, uSizeRange64.x, uSizeRange64.y);
     else if (uSizeByDensity)
         size64 = clamp(uSize64 / density, uSizeRange64.x, uSizeRange64.y);
+#ifdef GROWING
+    float apart = uNodeSize64 * uintBitsToFloat(uint(127 - levels.x) << 23) * scale;
+    float most = size64 * uintBitsToFloat(uint(127 + min(levels.y - levels.x, MAX_DOUBLINGS)) << 23);
+    size64 = clamp(min(apart, most), size64, uSizeRange64.y);
+#endif
 #endif
     if (uContinuous)
         size64 = clamp(size64 * grown, 64.0, uSizeRange64.y);

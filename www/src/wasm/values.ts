@@ -66,6 +66,7 @@ export interface Style {
     sizeSpacings: number;
     minSizePixels: number;
     maxSizePixels: number;
+    growsWhileLoading: boolean;
     shape: 'square' | 'circle' | 'paraboloid' | 'disc';
     delayedExpansion: 'off' | 'on' | 'auto';
     splats: { enabled: boolean; hardness: number; depthFactor: number };

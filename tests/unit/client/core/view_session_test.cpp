@@ -979,3 +979,51 @@ TEST_CASE("whatever bytes are damaged, the session settles with right points or 
         CHECK((whole || !fixture.session->recentErrors().empty()));
     }
 }
+
+TEST_CASE("the plan names what is awaited, until it is here or will never be") {
+    Fixture fixture(everything());
+    auto script = fixture.openAndFit(bigCloud());
+    std::size_t most = 0;
+    for (int i = 0; i < 500 && !fixture.session->settled(); ++i) {
+        fixture.session->update();
+        fakeNow += std::chrono::seconds(1);
+        const FramePlan& plan = fixture.session->plan();
+        most = std::max(most, plan.awaited.size());
+        // What is drawn whole is not awaited, and what is complete awaits nothing.
+        for (const DrawNode& node : plan.nodes)
+            if (node.pointCount == node.node->totalPoints)
+                CHECK(std::none_of(plan.awaited.begin(), plan.awaited.end(),
+                                   [&](const AwaitedNode& one) { return one.key == node.node->key; }));
+        if (plan.counters.complete)
+            CHECK(plan.awaited.empty());
+    }
+    REQUIRE(fixture.session->settled());
+    CHECK(most > 4);
+    CHECK(fixture.session->plan().awaited.empty());
+
+    Fixture other(everything());
+    Style style;
+    style.growsWhileLoading = false;
+    other.session->setStyle(style);
+    other.open(bigCloud().file);
+    other.look(bigCloud());
+    for (int i = 0; i < 500 && !other.session->settled(); ++i) {
+        other.session->update();
+        CHECK(other.session->plan().awaited.empty());
+    }
+    CHECK(other.session->settled());
+}
+
+TEST_CASE("nodes that will never come are not awaited") {
+    Fixture fixture(everything());
+    auto script = std::make_shared<SourceScript>();
+    script->file = bigCloud().file;
+    const NodeEntry& lost = nodeOf(bigCloud(), NodeKey{}.child(1).text());
+    script->file[static_cast<std::size_t>(lost.offsetBytes + 9)] ^= 0x5A;
+    script->file[static_cast<std::size_t>(lost.offsetBytes + 40)] ^= 0x5A;
+    fixture.session->addCloud(std::make_unique<ScriptedSource>(script), "damaged");
+    fixture.look(bigCloud());
+    REQUIRE(fixture.settle());
+    CHECK_FALSE(fixture.session->recentErrors().empty());
+    CHECK(fixture.session->plan().awaited.empty());
+}
