@@ -3,6 +3,7 @@
 # 20 million points; the tables of docs/MEASUREMENTS.md. For a quiet machine: minutes in software, an hour with a GL in software.
 #
 #   scripts/measure_rendering.sh [GLES 1 or 0, default 0] [MILLIONS...]
+#   PART=cases|discs|expansion takes one part of the table alone; all of them by default
 #
 # Error against time of every way of drawing, on scans: scripts/bench_rendering.sh.
 set -euo pipefail
@@ -17,6 +18,6 @@ shift || true
 echo "$(nproc) cores, load $(cut -d' ' -f1-3 /proc/loadavg)"
 for millions in "$@"; do
   case $millions in '' | *[!0-9.]*) fail "'$millions' is not a number of millions" ;; esac
-  "$speed" "$millions" 1920 1080 "$gles"
+  "$speed" "$millions" 1920 1080 "$gles" "${PART:-all}"
   echo
 done

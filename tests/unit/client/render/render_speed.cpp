@@ -1,7 +1,7 @@
 // Points a second of both rasterizers on made-up nodes: client_render_speed [POINTS_MILLION] [WIDTH HEIGHT]
-// [GLES 1 or 0]. Points lie on a rough ground seen from above at an angle, in nodes of 40,000, as a scan
-// does. Then what discs cost against circles, and what delayed expansion gains and how far its picture is
-// from that of drawing at once.
+// [GLES 1 or 0] [PART: all, cases, discs or expansion]. Points lie on a rough ground seen from above at an
+// angle, in nodes of 40,000, as a scan does. Cases are the ways of drawing; then what discs cost against
+// circles, and what delayed expansion gains and how far its picture is from that of drawing at once.
 #include "client/headless/egl_context.hpp"
 #include "client/measure/pixel_error.hpp"
 #include "client/render/gles_renderer.hpp"
@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <functional>
+#include <string>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -171,6 +172,30 @@ void compareDiscs(const Draw& draw, const std::vector<TestNode>& nodes, const Te
         }
 }
 
+// Either rasterizer's speed in each way of drawing; `gles` null: software alone.
+void printCases(const std::vector<TestNode>& nodes, const TestView& view, double half, double points,
+                headless::EglContext* context, GlesRenderer* gles) {
+    std::printf("%-20s %14s %12s %12s   %s\n", "", "1 thread (CPU)", "1 thread", "2 threads",
+                gles ? context->driver().c_str() : "no GLES");
+    auto single = SoftwareRenderer::create(1), two = SoftwareRenderer::create(2);
+    for (const Case& one : casesFor(half)) {
+        FramePlan plan = testPlan(nodes, view, one.style);
+        auto print = [points](double seconds) { std::printf(" %12.1f", points * 1e-6 / seconds); };
+        std::printf("%-20s  ", one.name);
+        print(bestSeconds(Clock::processor, 7, [&] { single->render(plan); }));
+        print(bestSeconds(Clock::wall, 7, [&] { single->render(plan); }));
+        print(bestSeconds(Clock::wall, 7, [&] { two->render(plan); }));
+        if (gles) {
+            auto target = context->framebuffer(view.width, view.height);
+            print(bestSeconds(Clock::wall, 1, [&] {
+                (void)gles->draw(plan, *target).ok();
+                glFinish();
+            }));
+        }
+        std::printf("\n");
+    }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -194,32 +219,27 @@ int main(int argc, char** argv) {
     auto gles = context.ok() && withGles
                     ? GlesRenderer::create()
                     : Result<std::unique_ptr<GlesRenderer>>(Error{ErrorCode::unsupported, "", "", ""});
-    std::printf("%.1f million points, %d x %d; million points a second\n", points * 1e-6, width, height);
-    std::printf("%-20s %14s %12s %12s   %s\n", "", "1 thread (CPU)", "1 thread", "2 threads",
-                gles.ok() ? (*context)->driver().c_str() : "no GLES");
-    auto single = SoftwareRenderer::create(1), two = SoftwareRenderer::create(2);
-    for (const Case& one : casesFor(half)) {
-        FramePlan plan = testPlan(nodes, view, one.style);
-        std::printf("%-20s", one.name);
-        std::printf(" %14.1f",
-                    points * 1e-6 / bestSeconds(Clock::processor, 7, [&] { single->render(plan); }));
-        std::printf(" %12.1f", points * 1e-6 / bestSeconds(Clock::wall, 7, [&] { single->render(plan); }));
-        std::printf(" %12.1f", points * 1e-6 / bestSeconds(Clock::wall, 7, [&] { two->render(plan); }));
-        if (gles.ok()) {
-            auto target = (*context)->framebuffer(width, height);
-            double seconds = bestSeconds(Clock::wall, 1, [&] {
-                (void)(*gles)->draw(plan, *target).ok();
-                glFinish();
-            });
-            std::printf(" %12.1f", points * 1e-6 / seconds);
-        }
-        std::printf("\n");
+    const std::string part = argc > 5 ? argv[5] : "all";
+    if (part != "all" && part != "cases" && part != "discs" && part != "expansion") {
+        std::fprintf(stderr, "client_render_speed: no part '%s'; all, cases, discs or expansion\n",
+                     part.c_str());
+        return 2;
     }
-    std::printf("Discs and circles, software\n");
-    compareDiscs([&](FramePlan& plan) { return single->render(plan); }, nodes, view, Clock::processor, 5);
+    auto wanted = [&part](const char* name) { return part == "all" || part == name; };
+    std::printf("%.1f million points, %d x %d; million points a second\n", points * 1e-6, width, height);
+    if (wanted("cases"))
+        printCases(nodes, view, half, points, context.ok() ? context->get() : nullptr,
+                   gles.ok() ? gles->get() : nullptr);
+    auto single = SoftwareRenderer::create(1);
+    auto draw = [&](FramePlan& plan) { return single->render(plan); };
+    if (wanted("discs")) {
+        std::printf("Discs and circles, software\n");
+        compareDiscs(draw, nodes, view, Clock::processor, 5);
+    }
+    if (!wanted("expansion"))
+        return 0;
     std::printf("Drawn at once, and with delayed expansion\n");
-    compareExpansion(
-        "software", [&](FramePlan& plan) { return single->render(plan); }, nodes, view, Clock::processor, 3);
+    compareExpansion("software", draw, nodes, view, Clock::processor, 3);
     if (gles.ok())
         compareExpansion(
             "gles",
