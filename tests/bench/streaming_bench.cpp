@@ -49,8 +49,8 @@ std::vector<StreamingWay> allWays(std::uint64_t budget, double spacing) {
     StreamingWay all{"all", {}, {}};
     all.limits.pointBudget = budget;
     all.limits.cacheBytes = 2ull << 30;
-    all.detail.mode = DetailMode::continuous;
-    all.detail.spacingPixels = spacing;
+    all.style.detail.mode = DetailMode::continuous;
+    all.style.detail.spacingPixels = spacing;
     std::vector<StreamingWay> ways{all};
     auto without = [&](const char* name, const auto& change) {
         ways.push_back(all);
@@ -58,11 +58,13 @@ std::vector<StreamingWay> allWays(std::uint64_t budget, double spacing) {
         change(ways.back());
     };
     without("plain", [](StreamingWay& way) {
-        way.detail.mode = DetailMode::discrete;
+        way.style.detail.mode = DetailMode::discrete;
         way.limits.techniques = {false, false, false, false};
         way.limits.skips.unused = false;
+        way.style.growsWhileLoading = false;
     });
-    without("levels", [](StreamingWay& way) { way.detail.mode = DetailMode::discrete; });
+    without("no growing", [](StreamingWay& way) { way.style.growsWhileLoading = false; });
+    without("levels", [](StreamingWay& way) { way.style.detail.mode = DetailMode::discrete; });
     without("whole nodes", [](StreamingWay& way) { way.limits.techniques.prefixes = false; });
     without("all attributes", [](StreamingWay& way) { way.limits.skips.unused = false; });
     without("no merging", [](StreamingWay& way) { way.limits.techniques.merging = false; });

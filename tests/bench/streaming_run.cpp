@@ -28,10 +28,8 @@ class Run {
         : scene_(scene), network_(options), decoder_(makeInlineDecoder()),
           session_(ViewSession::create(*decoder_, way.limits, [this] { return network_.now(); })),
           renderer_(SoftwareRenderer::create()) {
-        Style style;
-        style.detail = way.detail;
         session_->setViewport(scene.width, scene.height);
-        session_->setStyle(style);
+        session_->setStyle(way.style);
     }
 
     Result<StreamingResult> run() {

@@ -21,7 +21,7 @@ namespace stipple::test {
 struct StreamingWay {
     std::string name;
     SessionLimits limits;
-    Detail detail;
+    Style style;
 };
 
 // A cloud, and the cameras from which it is looked at.
