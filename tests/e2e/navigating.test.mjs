@@ -111,7 +111,7 @@ describe('moving about', () => {
     test('a flight that begins while another is under way takes its place, and goes its whole way', async () => {
         const ended = await page.evaluate(async () => {
             const frame = () => new Promise(requestAnimationFrame);
-            const canvas = document.querySelector('canvas');
+            const canvas = document.querySelector('stipple-viewer').shadowRoot.querySelector('canvas');
             const press = (key) => canvas.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
             window.stipple.setCamera({ target: window.stipple.camera().position.map((v, i) => v + [30, 30, -40][i]) });
             press('f');

@@ -90,9 +90,9 @@ describe('opening', () => {
             transfer.items.add(new File([bytes], 'dropped.stipple'));
             return transfer;
         }, base64);
-        await page.dispatchEvent('body', 'dragenter', { dataTransfer: dropped });
+        await page.dispatchEvent('stipple-viewer', 'dragenter', { dataTransfer: dropped });
         await page.getByText('Drop a .stipple file to open it').waitFor();
-        await page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
+        await page.dispatchEvent('stipple-viewer', 'drop', { dataTransfer: dropped });
 
         const { frame } = await settleWithPoints(page);
         assert.equal(before.frame.pointsDrawn, 0);
@@ -479,20 +479,19 @@ describe('moving', () => {
         await page.close();
     });
 
-    test('a lost WebGL context comes back with the picture', async () => {
+    test('a lost WebGL context is said, and comes back with the picture', async () => {
         const { page } = await openTown();
         const before = await readPixels(page);
         await page.evaluate(async () => {
-            const loss = document.querySelector('canvas').getContext('webgl2').getExtension('WEBGL_lose_context');
-            const next = (name) =>
-                new Promise((resolve) => document.querySelector('canvas').addEventListener(name, resolve, { once: true }));
-            const lost = next('webglcontextlost');
-            loss.loseContext();
-            await lost;
-            const restored = next('webglcontextrestored');
-            setTimeout(() => loss.restoreContext(), 50);
-            await restored;
+            const canvas = document.querySelector('stipple-viewer').shadowRoot.querySelector('canvas');
+            window.loss = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
+            window.loss.loseContext();
         });
+        const said = page.getByText('The browser has taken the graphics away');
+        await said.waitFor();
+        await keepScreenshot(page, 'context_lost');
+        await page.evaluate(() => window.loss.restoreContext());
+        await said.waitFor({ state: 'detached' });
         await settle(page);
         assert.equal(compare(before, await readPixels(page)).differing, 0);
         await page.close();

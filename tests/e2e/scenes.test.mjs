@@ -58,7 +58,7 @@ const state = (page) =>
 /** A scene that uses everything: two clouds, one of them hidden, looks, limits, a filter, a clip box, measurements. */
 async function setUp(page) {
     await page.getByRole('button', { name: 'village' }).click();
-    await page.waitForFunction(() => document.querySelector('stipple-app') && window.stipple.counters().settled);
+    await page.waitForFunction(() => window.stipple?.counters().settled);
     await page.waitForTimeout(500);
     await page.getByRole('checkbox', { name: 'Show village' }).uncheck();
     const { min, max } = await page.evaluate(() => {

@@ -129,22 +129,29 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     canvas.addEventListener('blur', () => navigator.letGo());
 }
 
-/** Clouds and scenes (.json) dropped anywhere on the page are opened. `hover` says whether one is held over it. */
-export function followDrops(model: Model, hover: (isOver: boolean) => void): void {
+/** Clouds and scenes (.json) dropped on `target` are opened. `hover` says whether one is held over it. Until `signal` aborts. */
+export function followDrops(
+    target: HTMLElement,
+    model: Model,
+    hover: (isOver: boolean) => void,
+    signal: AbortSignal,
+): void {
     let depth = 0;
     const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;
-    addEventListener('dragenter', (event) => {
+    const on = (name: 'dragenter' | 'dragover' | 'dragleave' | 'drop', act: (event: DragEvent) => void): void =>
+        target.addEventListener(name, act, { signal });
+    on('dragenter', (event) => {
         if (!holdsFiles(event)) return;
         event.preventDefault();
         hover(++depth > 0);
     });
-    addEventListener('dragover', (event) => {
+    on('dragover', (event) => {
         if (holdsFiles(event)) event.preventDefault();
     });
-    addEventListener('dragleave', (event) => {
+    on('dragleave', (event) => {
         if (holdsFiles(event)) hover(--depth > 0);
     });
-    addEventListener('drop', (event) => {
+    on('drop', (event) => {
         if (!holdsFiles(event)) return;
         event.preventDefault();
         depth = 0;

@@ -1,41 +1,26 @@
-import { html, render } from 'lit';
-
-import { followDrops, followInput } from './input.ts';
-import { Model } from './model.ts';
+import { StippleViewer } from './component/stipple_viewer.ts';
 import { fromFragment, isSceneFragment } from './scene/share_link.ts';
-import { listClouds, type CloudPage } from './server_clouds.ts';
 import { installTestHook } from './test_hook.ts';
-import { loadTexts, Texts } from './texts/texts.ts';
-import type { App } from './ui/app.ts';
-import './ui/app.ts';
 
+/** The page around the viewer: what its address names is opened. */
 async function start(): Promise<void> {
-    const list = listClouds(); // travels while the program loads
-    list.catch(() => {}); // told by the model
-    const texts = await loadTexts([...new URLSearchParams(location.search).getAll('lang'), ...navigator.languages]);
-    const canvas = document.createElement('canvas');
-    canvas.tabIndex = 0;
-    document.documentElement.lang = texts.locale;
-    canvas.setAttribute('aria-label', texts.text('page.canvas'));
-    document.body.append(canvas);
-
-    const model = await Model.create(canvas, texts);
+    const query = new URLSearchParams(location.search);
+    const viewer = document.createElement('stipple-viewer');
+    const attributes = { server: './', share: location.href.replace(/#.*/, ''), lang: query.get('lang'), theme: query.get('theme'), controls: '' };
+    for (const [name, value] of Object.entries(attributes)) if (value !== null) viewer.setAttribute(name, value);
+    document.body.append(viewer);
+    await viewer.whenReady();
+    const model = StippleViewer.modelOf(viewer);
+    document.documentElement.lang = model.texts.locale;
     installTestHook(model);
-    followInput(canvas, model);
-    const layer = document.createElement('div');
-    document.body.append(layer);
-    render(html`<stipple-app .model=${model}></stipple-app>`, layer);
-    const app = layer.querySelector<App>('stipple-app')!;
-    followDrops(model, (isOver) => (app.isDropTarget = isOver));
-
-    addEventListener('hashchange', () => void openLinkedScene(model));
-    if (!(await openLinkedScene(model))) await openClouds(model, list);
-    else await model.takeList(list);
+    addEventListener('hashchange', () => void openLinkedScene(viewer));
+    if (!(await openLinkedScene(viewer))) await openClouds(viewer);
 }
 
 /** The scene in the address's fragment, if there is one. */
-async function openLinkedScene(model: Model): Promise<boolean> {
+async function openLinkedScene(viewer: StippleViewer): Promise<boolean> {
     if (!isSceneFragment(location.hash)) return false;
+    const model = StippleViewer.modelOf(viewer);
     try {
         model.scenes.open(await fromFragment(location.hash));
         return true;
@@ -46,21 +31,11 @@ async function openLinkedScene(model: Model): Promise<boolean> {
 }
 
 /** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
-async function openClouds(model: Model, list: Promise<CloudPage>): Promise<void> {
+async function openClouds(viewer: StippleViewer): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('cloud');
-    named.forEach((address) => model.openAddress(address));
-    await model.takeList(list);
-    const first = model.listed[0];
-    if (named.length === 0 && first) model.openAddress(first.address, first.name);
+    named.forEach((address) => viewer.addCloud(address));
+    const [first] = await viewer.serverClouds();
+    if (named.length === 0 && first) viewer.addCloud(first.address, first.name);
 }
 
-function explain(error: unknown): void {
-    const box = document.createElement('p');
-    box.className = 'failure';
-    box.setAttribute('role', 'alert');
-    const texts = new Texts();
-    box.textContent = texts.text('page.cannotStart', { reason: texts.sentenceOf(error) });
-    document.body.replaceChildren(box);
-}
-
-start().catch(explain);
+start().catch(() => {}); // the viewer says why it can't

@@ -15,7 +15,8 @@ import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /**
  * What the page shows and the elements change: the viewer's state as last read, and the parts that do things with it, each
- * of one idea. Events: `change` (something that elements show), `frame` (a new picture), `rest` (the camera stands still).
+ * of one idea. Events: `change` (something that elements show), `frame` (a new picture), `rest` (the camera stands still),
+ * `context` (the graphics context was lost, or is there again).
  */
 export class Model extends EventTarget {
     listed: ListedCloud[] = [];
@@ -45,6 +46,12 @@ export class Model extends EventTarget {
     /** What was measured, and the tool in hand. */
     readonly measuring = new Measuring(this);
 
+    /** The browser has taken the graphics context away. */
+    isContextLost = false;
+    /** Of a page that opens scenes of its fragment; none: links are not offered. */
+    shareAddress: string | undefined;
+    isDisposed = false;
+
     private reportIsDue = false;
     private readonly toldErrors = new Set<string>();
     private readonly addresses = new Map<string, number>(); // address → cloud id
@@ -53,6 +60,8 @@ export class Model extends EventTarget {
         readonly canvas: HTMLCanvasElement,
         private readonly viewer: Viewer,
         texts: Texts,
+        /** Whose clouds are listed, and who cuts profiles. */
+        readonly server: URL | undefined,
     ) {
         super();
         this.texts = texts;
@@ -62,13 +71,19 @@ export class Model extends EventTarget {
         this.camera = new CameraMoves(this, viewer);
         this.scenes = new Scenes(this, viewer);
         this.read();
-        this.surface.follow(this.frames, () => this.act(() => viewer.contextRestored()));
+        this.surface.follow(this.frames, {
+            lost: () => this.setContextLost(true),
+            restored: () => {
+                this.act(() => viewer.contextRestored());
+                this.setContextLost(false);
+            },
+        });
     }
 
-    static async create(canvas: HTMLCanvasElement, texts: Texts): Promise<Model> {
+    static async create(canvas: HTMLCanvasElement, texts: Texts, server?: URL): Promise<Model> {
         let model: Model | undefined;
         const viewer = await Viewer.create(canvas, () => model?.wake());
-        return (model = new Model(canvas, viewer, texts));
+        return (model = new Model(canvas, viewer, texts, server));
     }
 
     // Clouds
@@ -89,7 +104,7 @@ export class Model extends EventTarget {
     async listMore(): Promise<void> {
         const next = this.nextOfList;
         this.nextOfList = undefined;
-        if (next !== undefined) await this.takeList(listClouds(next));
+        if (next !== undefined && this.server) await this.takeList(listClouds(this.server, next));
     }
 
     isOpen(address: string): boolean {
@@ -110,9 +125,10 @@ export class Model extends EventTarget {
         return id;
     }
 
-    openFile(file: File): void {
-        this.viewer.addFile(file);
+    openFile(file: File): number {
+        const id = this.viewer.addFile(file);
         this.wake();
+        return id;
     }
 
     close(id: number): void {
@@ -144,6 +160,9 @@ export class Model extends EventTarget {
         return this.viewer.measure(request);
     }
 
+    readClouds(): CloudState[] {
+        return this.viewer.clouds();
+    }
     readCounters(): Counters {
         return this.viewer.counters();
     }
@@ -160,16 +179,23 @@ export class Model extends EventTarget {
         this.dispatchEvent(new Event('change'));
     }
 
-    /** Changes the viewer; what is wrong with that is told. */
+    /** Changes the viewer; what is wrong with that is thrown. */
+    change(change: (viewer: Viewer) => void): void {
+        try {
+            change(this.viewer);
+        } finally {
+            this.read();
+            this.changed();
+            this.wake();
+        }
+    }
+    /** The same; what is wrong is told. */
     act(change: () => void): void {
         try {
-            change();
+            this.change(change);
         } catch (error) {
             this.tell(error);
         }
-        this.read();
-        this.changed();
-        this.wake();
     }
 
     notify(sentence: string): void {
@@ -185,6 +211,23 @@ export class Model extends EventTarget {
         this.changed();
     }
 
+    /** Gives everything back that the browser lent. Nothing may be asked of it afterwards. */
+    dispose(): void {
+        this.isDisposed = true;
+        this.frames.stop();
+        this.camera.stop();
+        this.picking.stop();
+        this.profile.close();
+        this.viewer.dispose();
+        this.surface.release();
+    }
+
+    private setContextLost(isLost: boolean): void {
+        this.isContextLost = isLost;
+        this.dispatchEvent(new Event('context'));
+        this.changed();
+    }
+
     /** Tells the elements, at most ten times a second. */
     private drawn(drew: boolean): void {
         if (drew) this.dispatchEvent(new Event('frame'));
@@ -192,6 +235,7 @@ export class Model extends EventTarget {
         this.reportIsDue = true;
         setTimeout(() => {
             this.reportIsDue = false;
+            if (this.isDisposed) return;
             this.read();
             this.changed();
         }, 100);

@@ -16,11 +16,18 @@ export interface CloudPage {
     next?: string;
 }
 
-/** What the server that delivered this page has; nothing where it is a plain file host. `next` of the page before. */
-export async function listClouds(next = 'api/v1/clouds'): Promise<CloudPage> {
-    const response = await fetch(new URL(next, document.baseURI), { cache: 'no-store' });
+/** What a server has; nothing where it is a plain file host. `next` of the page before. */
+export async function listClouds(server: URL, next = 'api/v1/clouds'): Promise<CloudPage> {
+    const response = await fetch(new URL(next, server), { cache: 'no-store' });
     if (response.status === 404) return { clouds: [] };
     if (!response.ok) throw new Problem('clouds.listFailed', { status: String(response.status) });
     if (!response.headers.get('content-type')?.includes('json')) return { clouds: [] };
-    return (await response.json()) as CloudPage;
+    const page = (await response.json()) as CloudPage;
+    return { ...page, clouds: page.clouds.map((cloud) => ({ ...cloud, address: fromPage(cloud.address, server) })) };
+}
+
+/** Addresses of the page's own server stay relative, so that scenes work where the page is moved to. */
+function fromPage(address: string, server: URL): string {
+    const absolute = new URL(address, server).href;
+    return new URL(address, document.baseURI).href === absolute ? address : absolute;
 }

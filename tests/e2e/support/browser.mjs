@@ -65,5 +65,5 @@ export async function keepScreenshot(page, name) {
     const folder = process.env.STIPPLE_E2E_PICTURES;
     if (!folder) return;
     await mkdir(folder, { recursive: true });
-    await page.screenshot({ path: join(folder, `${name}.jpg`), type: 'jpeg', quality: 82 });
+    await page.screenshot({ path: join(folder, `${name}.jpg`), type: 'jpeg', quality: 82, caret: 'initial' }); // hiding the caret takes a style that the page's policy forbids
 }

@@ -44,11 +44,13 @@ export class Clipping {
 
     /** Addresses of the server's points of each cloud, where this page's server has it. */
     apisOfClouds(): { name: string; api: string }[] {
+        const { server } = this.model;
+        if (!server) return [];
         return this.model.listed
             .filter((cloud) => this.model.isOpen(cloud.address))
             .map(({ id, name }) => ({
                 name,
-                api: new URL(`api/v1/clouds/${encodeURIComponent(id)}`, document.baseURI).href,
+                api: new URL(`api/v1/clouds/${encodeURIComponent(id)}`, server).href,
             }));
     }
 

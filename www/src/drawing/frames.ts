@@ -10,6 +10,7 @@ export class Frames {
     /** Frames are timed while the camera moves, to hold a frame time. */
     isTimed = false;
     private isDue = false;
+    private isStopped = false;
     /** The camera has not moved for a while. */
     private atRest = true;
     private restTimer: ReturnType<typeof setTimeout> | undefined;
@@ -24,7 +25,7 @@ export class Frames {
 
     /** A frame is due. */
     wake(): void {
-        if (this.isDue) return;
+        if (this.isDue || this.isStopped) return;
         this.isDue = true;
         requestAnimationFrame(() => this.draw());
     }
@@ -42,9 +43,18 @@ export class Frames {
         });
     }
 
+    /** For good. Whoever waits for the picture to settle waits no more. */
+    stop(): void {
+        this.isStopped = true;
+        clearTimeout(this.restTimer);
+        clearTimeout(this.lookAgainTimer);
+        this.settledWaiters.splice(0).forEach((resolve) => resolve());
+    }
+
     /** At once, where the browser would show an empty canvas before the next frame. */
     draw(): void {
         this.isDue = false;
+        if (this.isStopped) return;
         const start = performance.now();
         const drew = this.viewer.frame();
         if (drew && !this.atRest && this.isTimed) this.time(start);
@@ -59,7 +69,9 @@ export class Frames {
      * further frame comes for a while, the camera rests.
      */
     private time(start: number): void {
-        requestAnimationFrame(() => this.viewer.frameTook((performance.now() - start) / 1000));
+        requestAnimationFrame(() => {
+            if (!this.isStopped) this.viewer.frameTook((performance.now() - start) / 1000);
+        });
         clearTimeout(this.restTimer);
         this.restTimer = setTimeout(() => {
             this.atRest = true; // what is drawn now may take its time

@@ -3,8 +3,8 @@ import { Questions, type Reply } from './questions.ts';
 import type { PickedPoint, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 
-/** What is under the pointer. Places and radii are CSS pixels of the canvas. */
-export class Picking {
+/** What is under the pointer. Places and radii are CSS pixels of the canvas. 'pick': a person asked. */
+export class Picking extends EventTarget {
     /** The point that was asked about last. */
     point: PickedPoint | null = null;
     private readonly questions = new Questions();
@@ -12,7 +12,9 @@ export class Picking {
     constructor(
         private readonly model: Model,
         private readonly viewer: Viewer,
-    ) {}
+    ) {
+        super();
+    }
 
     /** The place shown there, in world coordinates, without anything being read; null if there is none. */
     place(x: number, y: number, radius = 8): Promise<Vector | null> {
@@ -38,6 +40,7 @@ export class Picking {
     async show(x: number, y: number): Promise<void> {
         try {
             this.point = await this.pick(x, y);
+            this.dispatchEvent(new Event('pick'));
         } catch (error) {
             this.model.tell(error);
         }
@@ -46,6 +49,11 @@ export class Picking {
     forget(): void {
         this.point = null;
         this.model.changed();
+    }
+
+    /** Whoever waits for an answer gets null. */
+    stop(): void {
+        this.questions.stop();
     }
 
     private begin(x: number, y: number, radius: number): void {

@@ -12,9 +12,11 @@ export interface Reply<T> {
 export class Questions {
     private last = 0;
     private open = 0;
+    private isStopped = false;
 
     /** `begin` asks, `take` looks for the reply each frame. */
     async ask<T>(begin: () => void, take: () => Reply<T>): Promise<T | null> {
+        if (this.isStopped) return null;
         const question = ++this.last;
         this.open++;
         try {
@@ -28,15 +30,21 @@ export class Questions {
     /** For one asker at a time. */
     async askAside<T>(begin: () => void, take: () => Reply<T>): Promise<T | null | undefined> {
         while (this.open > 0) await frame();
+        if (this.isStopped) return undefined;
         const question = this.last;
         begin();
         return this.reply(question, take);
     }
 
+    /** Nobody answers any more. */
+    stop(): void {
+        this.isStopped = true;
+    }
+
     private async reply<T>(question: number, take: () => Reply<T>): Promise<T | null | undefined> {
         for (;;) {
             await frame();
-            if (question !== this.last) return undefined; // another took its place
+            if (this.isStopped || question !== this.last) return undefined; // another took its place
             const { pending, value, error } = take();
             if (error !== undefined) throw new Error(error);
             if (!pending) return value ?? null;

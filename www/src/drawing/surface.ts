@@ -4,6 +4,9 @@ import type { Frames } from './frames.ts';
 
 /** The canvas that is drawn on: its size, its graphics context, its pixels. Places are CSS pixels of it. */
 export class Surface {
+    private readonly stopping = new AbortController();
+    private sizes: ResizeObserver | undefined;
+
     constructor(
         readonly canvas: HTMLCanvasElement,
         private readonly viewer: Viewer,
@@ -14,9 +17,10 @@ export class Surface {
         return this.canvas.clientWidth > 0 ? this.canvas.width / this.canvas.clientWidth : 1;
     }
 
-    /** From now on the picture has the canvas's size. `restored`: the graphics context is there again. */
-    follow(frames: Frames, restored: () => void): void {
-        new ResizeObserver(() => {
+    /** From now on the picture has the canvas's size; the browser may take the graphics context and give it back. */
+    follow(frames: Frames, context: { lost: () => void; restored: () => void }): void {
+        const { signal } = this.stopping;
+        this.sizes = new ResizeObserver(() => {
             const { clientWidth, clientHeight } = this.canvas;
             const ratio = window.devicePixelRatio || 1;
             this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
@@ -25,12 +29,22 @@ export class Surface {
             // Setting the size clears the canvas: draw before the browser shows it.
             this.viewer.redraw();
             frames.draw();
-        }).observe(this.canvas);
-        this.canvas.addEventListener('webglcontextlost', (event) => {
-            event.preventDefault();
-            this.viewer.contextLost();
         });
-        this.canvas.addEventListener('webglcontextrestored', restored);
+        this.sizes.observe(this.canvas);
+        const lost = (event: Event): void => {
+            event.preventDefault(); // so that it is given back
+            this.viewer.contextLost();
+            context.lost();
+        };
+        this.canvas.addEventListener('webglcontextlost', lost, { signal });
+        this.canvas.addEventListener('webglcontextrestored', context.restored, { signal });
+    }
+
+    /** Gives the graphics context back; the canvas is of no use any more. */
+    release(): void {
+        this.sizes?.disconnect();
+        this.stopping.abort();
+        this.canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
     }
 
     /** Where world positions are in the picture; null for what is behind the camera. */

@@ -29,6 +29,12 @@ export class CameraMoves {
         this.model.act(() => this.viewer.setCamera(change));
         this.rememberSoon();
     }
+    /** The same; what is wrong with it is thrown. */
+    set(change: object): void {
+        this.model.frames.move();
+        this.model.change(() => this.viewer.setCamera(change));
+        this.rememberSoon();
+    }
     showView(view: NamedView): void {
         this.model.act(() => this.viewer.showView(view));
         this.rememberSoon();
@@ -90,6 +96,12 @@ export class CameraMoves {
     forward(): void {
         const camera = this.history.forward();
         if (camera) void this.flyToCamera(camera);
+    }
+
+    /** No flight goes on. */
+    stop(): void {
+        this.lastFlight++;
+        clearTimeout(this.rememberTimer);
     }
 
     /** Once the camera has rested for a while, it can be gone back to. */

@@ -106,7 +106,7 @@ export class Navigator {
     private async walk(): Promise<void> {
         this.isWalking = true;
         let last = performance.now(), asked = -Infinity;
-        while (this.keys.size > 0) {
+        while (this.keys.size > 0 && !this.model.isDisposed) {
             if (last - asked > 1000) {
                 asked = last;
                 void this.ask(this.pointer, (place) => (this.walkDepth = place ? this.depthOf(place) : this.walkDepth));

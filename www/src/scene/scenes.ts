@@ -38,7 +38,11 @@ export class Scenes {
         };
     }
 
-    /** Shows the scene of a text; what is wrong with it is told, and leaves everything as it was. */
+    /** Shows the scene of a text; what is wrong with it is thrown, and leaves everything as it was. */
+    set(text: string): void {
+        this.model.change(() => this.show(readScene(text)));
+    }
+    /** The same; what is wrong is told. */
     open(text: string): void {
         this.model.act(() => this.show(readScene(text)));
     }

@@ -7,6 +7,8 @@ export const english = {
     'page.canvas':
         'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
     'page.cannotStart': "Stipple can't start: {reason}",
+    'page.badBudget': 'The attribute budget is not a number of points: {value}',
+    'page.contextLost': 'The browser has taken the graphics away. The picture comes back as soon as it gives them back; if it does not, load the page anew.',
     'page.controls': 'Controls',
     'page.hide': 'Hide',
     'page.dismiss': 'Dismiss',

@@ -4,6 +4,9 @@ export const french = translation({
     'page.canvas':
         'Nuage de points. Les flèches tournent, maj et les flèches déplacent, plus et moins zooment, 1, 2, 3 et 4 montrent les vues de dessus, de face, isométrique et de côté, F montre tout, U revient en arrière.',
     'page.cannotStart': 'Stipple ne peut pas démarrer : {reason}',
+    'page.badBudget': 'L’attribut budget n’est pas un nombre de points : {value}',
+    'page.contextLost':
+        'Le navigateur a retiré l’affichage graphique. L’image revient dès qu’il le rend ; sinon, rechargez la page.',
     'page.controls': 'Réglages',
     'page.hide': 'Masquer',
     'page.dismiss': 'Fermer',

@@ -4,6 +4,9 @@ export const german = translation({
     'page.canvas':
         'Punktwolke. Pfeiltasten drehen, Umschalt und Pfeiltasten verschieben, Plus und Minus zoomen, 1, 2, 3 und 4 zeigen Draufsicht, Vorderansicht, Schrägansicht und Seitenansicht, F zeigt alles, U geht zurück.',
     'page.cannotStart': 'Stipple kann nicht starten: {reason}',
+    'page.badBudget': 'Das Attribut budget ist keine Anzahl von Punkten: {value}',
+    'page.contextLost':
+        'Der Browser hat die Grafik entzogen. Das Bild kommt zurück, sobald er sie wieder freigibt; geschieht das nicht, laden Sie die Seite neu.',
     'page.controls': 'Bedienung',
     'page.hide': 'Ausblenden',
     'page.dismiss': 'Schließen',

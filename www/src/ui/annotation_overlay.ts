@@ -104,17 +104,17 @@ export class AnnotationOverlay extends OverlayElement {
         const isFree = !annotations.isPlacing && !this.model.measuring.isDrawing;
         const isOpen = isFree && annotations.opened === item.id, place = `left: ${x}px; top: ${y}px`;
         const covered = annotations.covered.has(item.id) && !isOpen ? 'covered' : '';
-        return html`<span class="dot" style=${place}></span>
+        return html`<span class="dot" .style=${place}></span>
             <button
                 class="label ${covered} ${isOpen ? 'open' : ''} ${isFree ? '' : 'aside'}"
-                style=${place}
+                .style=${place}
                 aria-expanded=${isOpen}
                 @click=${() => annotations.open(item.id)}
                 @dblclick=${() => void annotations.flyTo(item.id)}
             >
                 ${item.title}
             </button>
-            ${isOpen && item.text ? html`<div class="text" style=${place}>${this.contentOf(item.text)}</div>` : ''}`;
+            ${isOpen && item.text ? html`<div class="text" .style=${place}>${this.contentOf(item.text)}</div>` : ''}`;
     }
 
     /** Markdown is read by a part of the page that is loaded when it is wanted first. */

@@ -16,6 +16,9 @@ import { css, html, type TemplateResult } from 'lit';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
+/** Up to this width of the viewer panels are a sheet at its foot, closed at first. */
+const narrow = 600;
+
 /** Everything over the canvas: the panel, the counters, the status line, notices. */
 export class App extends ModelElement {
     static override properties = {
@@ -23,16 +26,18 @@ export class App extends ModelElement {
         panelIsOpen: { state: true },
         countersAreOpen: { state: true },
         isDropTarget: { attribute: false },
+        hasControls: { attribute: false },
     };
     declare panelIsOpen: boolean;
     declare countersAreOpen: boolean;
     declare isDropTarget: boolean;
+    declare hasControls: boolean;
 
     static override styles = [
         controlStyles,
         css`
             :host {
-                position: fixed;
+                position: absolute;
                 inset: 0;
                 isolation: isolate;
                 pointer-events: none;
@@ -127,7 +132,7 @@ export class App extends ModelElement {
             }
             progress {
                 appearance: none;
-                position: fixed;
+                position: absolute;
                 inset: 0 0 auto 0;
                 width: 100%;
                 height: 3px;
@@ -146,11 +151,11 @@ export class App extends ModelElement {
                 background: var(--accent);
             }
             .notices {
-                position: fixed;
+                position: absolute;
                 left: 50%;
                 top: 12px;
                 transform: translateX(-50%);
-                width: min(520px, calc(100vw - 24px));
+                width: min(520px, 100% - 24px);
                 display: grid;
                 gap: 8px;
                 pointer-events: none;
@@ -168,17 +173,17 @@ export class App extends ModelElement {
                 overflow-wrap: anywhere;
             }
             .drop {
-                position: fixed;
+                position: absolute;
                 inset: 12px;
                 display: grid;
                 place-items: center;
                 border: 2px dashed var(--accent);
                 border-radius: 16px;
-                background: rgb(24 26 30 / 0.75);
+                background: var(--panel);
                 font-size: 1.2rem;
                 pointer-events: none;
             }
-            @media (max-width: 600px) {
+            @container (max-width: 600px) {
                 :host {
                     grid-template-columns: 1fr;
                     grid-template-rows: 1fr auto auto;
@@ -189,7 +194,7 @@ export class App extends ModelElement {
                     grid-row: 3;
                     grid-column: 1;
                     width: 100%;
-                    max-height: 52vh;
+                    max-height: 52cqh;
                     align-self: end;
                 }
                 .controls.closed {
@@ -199,13 +204,13 @@ export class App extends ModelElement {
                     grid-column: 1;
                     grid-row: 1;
                     justify-self: end;
-                    max-height: 40vh;
+                    max-height: 40cqh;
                 }
                 .point {
                     grid-column: 1;
                     grid-row: 1;
                     justify-self: start;
-                    max-height: 40vh;
+                    max-height: 40cqh;
                 }
                 .profile {
                     grid-column: 1;
@@ -229,6 +234,7 @@ export class App extends ModelElement {
     override connectedCallback(): void {
         super.connectedCallback();
         this.model.profile.addEventListener('change', this.follow);
+        this.panelIsOpen = this.model.canvas.clientWidth > narrow;
     }
     override disconnectedCallback(): void {
         this.model.profile.removeEventListener('change', this.follow);
@@ -237,16 +243,23 @@ export class App extends ModelElement {
 
     constructor() {
         super();
-        this.panelIsOpen = !matchMedia('(max-width: 600px)').matches;
+        this.panelIsOpen = true;
         this.countersAreOpen = false;
         this.isDropTarget = false;
+        this.hasControls = true;
     }
 
     override render(): TemplateResult {
         return html`<stipple-annotation-overlay .model=${this.model}></stipple-annotation-overlay>
             <stipple-clip-overlay .model=${this.model}></stipple-clip-overlay>
             <stipple-measure-overlay .model=${this.model}></stipple-measure-overlay>
-            ${this.renderProgress()} ${this.renderControls()}
+            ${this.renderProgress()} ${this.hasControls ? this.renderPanels() : ''}
+            ${this.renderNotices()}
+            ${this.isDropTarget ? html`<div class="drop">${this.text('page.drop')}</div>` : ''}`;
+    }
+
+    private renderPanels(): TemplateResult {
+        return html`${this.renderControls()}
             ${this.countersAreOpen
                 ? html`<aside class="panel counters" aria-label=${this.text('counters')}>
                       <stipple-counters .model=${this.model}></stipple-counters>
@@ -262,8 +275,14 @@ export class App extends ModelElement {
                       <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
-            ${this.renderStatus()}
-            <div class="notices">
+            ${this.renderStatus()}`;
+    }
+
+    private renderNotices(): TemplateResult {
+        return html`<div class="notices">
+                ${this.model.isContextLost
+                    ? html`<div class="notice" role="alert"><span>${this.text('page.contextLost')}</span></div>`
+                    : ''}
                 ${this.model.notices.map(
                     (notice) =>
                         html`<div class="notice" role="alert">
@@ -277,8 +296,7 @@ export class App extends ModelElement {
                             </button>
                         </div>`,
                 )}
-            </div>
-            ${this.isDropTarget ? html`<div class="drop">${this.text('page.drop')}</div>` : ''}`;
+            </div>`;
     }
 
     private renderControls(): TemplateResult {

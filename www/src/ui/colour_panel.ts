@@ -245,7 +245,7 @@ export class ColourPanel extends ModelElement {
                                         @change=${(event: Event) =>
                                             show(one.class, (event.target as HTMLInputElement).checked)}
                                     />
-                                    <span class="swatch" style=${`background: rgb(${one.colour.join(',')})`}></span>
+                                    <span class="swatch" .style=${`background: rgb(${one.colour.join(',')})`}></span>
                                     <span>${one.class} ${nameOf(one)}</span>
                                     <span class="points">${this.texts.compact(one.points)}</span>
                                 </label>

@@ -6,7 +6,7 @@ import { ModelElement } from './model_element.ts';
 export abstract class OverlayElement extends ModelElement {
     static overlayStyles: CSSResult = css`
         :host {
-            position: fixed;
+            position: absolute;
             inset: 0;
             pointer-events: none;
             overflow: hidden;

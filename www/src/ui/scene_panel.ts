@@ -15,7 +15,7 @@ export class ScenePanel extends ModelElement {
         css`
             .ways {
                 display: grid;
-                grid-template-columns: repeat(4, 1fr);
+                grid-template-columns: repeat(auto-fit, minmax(3.6rem, 1fr));
                 gap: 0.4rem;
             }
             .ways button {
@@ -52,7 +52,9 @@ export class ScenePanel extends ModelElement {
                 <button @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#scene')!.click()}>
                     ${this.text('scene.load')}
                 </button>
-                <button @click=${() => void this.share()}>${this.text('scene.link')}</button>
+                ${this.model.shareAddress === undefined
+                    ? ''
+                    : html`<button @click=${() => void this.share()}>${this.text('scene.link')}</button>`}
                 <button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>
             </div>
             <input type="file" id="scene" accept=".json,application/json" @change=${this.load} />
@@ -74,7 +76,7 @@ export class ScenePanel extends ModelElement {
     }
 
     private async share(): Promise<void> {
-        const address = new URL(location.href);
+        const address = new URL(this.model.shareAddress!, document.baseURI);
         address.hash = await toFragment(JSON.stringify(this.model.scenes.scene()));
         this.link = address.href;
         try {

@@ -1,5 +1,6 @@
 import decoderUrl from '@programs/stipple_decoder.wasm?url';
 
+import { compiledOnce } from './compiled.ts';
 import type { FromDecoder, ToDecoder } from './decoder_messages.ts';
 
 interface Hand {
@@ -57,7 +58,7 @@ export class DecoderPool {
 
     private async share(): Promise<void> {
         try {
-            const program = await WebAssembly.compileStreaming(fetch(decoderUrl));
+            const program = await compiledOnce(decoderUrl);
             this.hands.forEach((hand) => this.send(hand, { kind: 'program', program }));
         } catch (error) {
             this.hands.forEach((hand) => this.dismiss(hand, `the decoder did not load: ${String(error)}`));

@@ -13,7 +13,6 @@ export interface Program {
 export interface ProgramOptions {
     canvas?: HTMLCanvasElement;
     host?: unknown;
-    locateFile?: (name: string) => string;
     instantiateWasm?: (
         imports: WebAssembly.Imports,
         receive: (instance: WebAssembly.Instance) => void,

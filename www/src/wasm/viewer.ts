@@ -1,6 +1,7 @@
 import createViewer from '@programs/stipple_viewer.mjs';
 import viewerUrl from '@programs/stipple_viewer.wasm?url';
 
+import { compiledOnce } from './compiled.ts';
 import type { Heap } from './heap.ts';
 import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
@@ -31,11 +32,26 @@ export class Viewer {
 
     /** `wake` is called when something arrived and a frame is due. */
     static async create(canvas: HTMLCanvasElement, wake: () => void): Promise<Viewer> {
+        const compiled = await compiledOnce(viewerUrl);
         const host = new Host(wake);
-        const options: ProgramOptions = { canvas, host, locateFile: () => viewerUrl };
-        const program = (await createViewer(options)) as ViewerProgram;
+        const program = await new Promise<ViewerProgram>((resolve, reject) => {
+            const options: ProgramOptions = {
+                canvas,
+                host,
+                instantiateWasm: (imports, receive) => {
+                    WebAssembly.instantiate(compiled, imports).then(receive, reject); // out of memory, for one
+                    return {};
+                },
+            };
+            createViewer(options).then((made) => resolve(made as ViewerProgram), reject);
+        });
         const viewer = new Viewer(program, host.attach(program), host);
-        viewer.expect(program._stipple_create());
+        try {
+            viewer.expect(program._stipple_create());
+        } catch (error) {
+            host.dispose();
+            throw error;
+        }
         return viewer;
     }
 
