@@ -67,8 +67,8 @@ struct Style : ColourStyle {
     double sizeSpacings = 2;
     double minSizePixels = 1, maxSizePixels = 64;
     // Modes fixed and spacing: where finer nodes that belong in the picture are still to come, points are
-    // twice as wide for each level that is missing there, so that no holes show until then. Never of a
-    // settled picture.
+    // up to twice as wide for each level that is missing there, at most four times, so that no holes show
+    // until then. Never of a settled picture.
     bool growsWhileLoading = true;
     PointShape shape = PointShape::circle;
     Splats splats;

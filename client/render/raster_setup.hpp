@@ -75,7 +75,7 @@ inline constexpr int positionCells = 128; // cells a pixel, per axis
 inline constexpr int sizeSteps = 64;      // size steps a pixel
 inline constexpr int depthBits = 24;
 inline constexpr int maxPointPixels = 255; // any larger maximum size is clamped to this
-inline constexpr int maxDoublings = 3;     // "Growing"; larger points hide more of the picture than they fill
+inline constexpr int maxDoublings = 2;     // "Growing"; larger points hide more of the picture than they fill
 inline constexpr int maxPictureSide = 16384;
 // Positions are clamped to this before they become integers; no size reaches back from there.
 inline constexpr float positionLimit = 32768;

@@ -89,7 +89,7 @@ double exactPixels(const Scene& scene, const TestNode& node, const TestPoint& po
     double half = perspective ? plan.view.tanHalfFovY * depth : plan.view.halfHeight;
     double apart =
         std::ldexp(node.spacing, node.key.level - drawn) * plan.style.sizeSpacings * plan.height / (2 * half);
-    double most = std::ldexp(plan.style.sizePixels, std::min(deepest - drawn, 3));
+    double most = std::ldexp(plan.style.sizePixels, std::min(deepest - drawn, maxDoublings));
     return std::clamp(apart, plan.style.sizePixels, std::min(most, plan.style.maxSizePixels));
 }
 
