@@ -6,7 +6,7 @@ namespace stipple {
 
 namespace {
 
-constexpr double chosenAheadSeconds = 0.1, hopedBytesPerSecond = 5e6;
+constexpr double chosenAheadSeconds = 0.1, hopedBytesPerSecond = 2e6;
 constexpr std::uint64_t leastBytesInFlight = 192 << 10, leastGapBytes = 4096, leastRequestBytes = 32 << 10;
 constexpr std::uint64_t leastLetFinishBytes = 16 << 10, leastPieceBytes = 16 << 10;
 
@@ -39,8 +39,8 @@ LoadLimits adaptedLimits(const LoadLimits& most, const TransferEstimate& estimat
     fitted.bytes = within(2 * rate * (delay + chosenAheadSeconds), leastBytesInFlight, most.bytes);
     fitted.mergedRequestBytes =
         within(static_cast<double>(fitted.bytes) / requests, leastRequestBytes, most.mergedRequestBytes);
-    fitted.mergeGapBytes = within(held / requests / 2, leastGapBytes, most.mergeGapBytes);
-    fitted.pieceBytes = within(held / requests, leastPieceBytes, most.mergedRequestBytes);
+    fitted.mergeGapBytes = within(held / requests / 4, leastGapBytes, most.mergeGapBytes);
+    fitted.pieceBytes = within(2 * held / requests, leastPieceBytes, most.mergedRequestBytes);
     fitted.letFinishBytes = within(held, leastLetFinishBytes, most.bytes);
     return fitted;
 }

@@ -33,13 +33,13 @@ LoadLimits unmeasuredLimits(const LoadLimits& most);
 //   on
 //                       its way is at most 0.2 s + 2 d old when it comes, so that a new view is soon served
 //   mergedRequestBytes  that, over all connections
-//   mergeGapBytes       what a connection could carry while a request of its own travels: B d / requests / 2
-//   pieceBytes          likewise, B d / requests
-//   letFinishBytes      B d: what would come in the time in which a new connection is made
+//   mergeGapBytes       half of what a connection could carry while a request of its own travels: B d /
+//   requests / 4 pieceBytes          so much that a connection is busy for two thirds of the time: 2 B d /
+//   requests letFinishBytes      B d: what would come in the time in which a new connection is made
 //
 // What was measured is the network's bandwidth only if enough was on its way to fill it. While little was
 // measured, and where requests come back about as soon as the delay allows (`isPipeShort`), it is taken to be
-// at least 40 Mbit/s: then larger requests, with gaps between, cost less than further round trips.
+// at least 16 Mbit/s: then larger requests, with gaps between, cost less than further round trips.
 LoadLimits adaptedLimits(const LoadLimits& most, const TransferEstimate& estimate, bool isPipeShort = false);
 
 } // namespace stipple
