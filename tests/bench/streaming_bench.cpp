@@ -7,6 +7,7 @@
 // the bounds of NUMERICS.md of the reference), not against what each way ends with: ways that end with
 // different points are then measured by the same thing, and what a way never shows counts against it.
 #include "client/core/json.hpp"
+#include "client/headless/png.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/verb.hpp"
 #include "shared/format/cloud_file.hpp"
@@ -30,9 +31,12 @@ struct Options {
     std::vector<std::string> paths{"fly-over", "walk", "jump"};
     std::vector<std::string> ways{"all", "plain"};
     int frames = 3, connections = 6;
+    int width = 1280, height = 720;
     std::uint64_t budget = 2'000'000;
     double spacing = 1;
     bool each = false;
+    std::vector<double> at; // seconds
+    std::string pictures;
 };
 
 template <class T>
@@ -42,6 +46,13 @@ T need(Result<T> result) {
         std::exit(1);
     }
     return std::move(*result);
+}
+
+void need(const Status& status) {
+    if (!status.ok()) {
+        std::fprintf(stderr, "streaming_bench: %s\n", status.error().sentence().c_str());
+        std::exit(1);
+    }
 }
 
 // Everything on; everything off; and everything on but one.
@@ -103,6 +114,8 @@ std::vector<StreamingScene> scenesOf(const std::string& path, const Options& opt
         StreamingScene scene;
         scene.name = name;
         scene.file = file;
+        scene.width = options.width;
+        scene.height = options.height;
         scene.cameras = need(bench::builtInPath(name, bounds, options.frames)).cameras;
         scene.targets = need(targetPictures(path, scene.cameras, scene.width, scene.height));
         scenes.push_back(std::move(scene));
@@ -138,7 +151,11 @@ void measure(const std::string& path, const Options& options) {
             std::optional<StreamingResult> sum;
             for (const StreamingScene& scene : scenes) {
                 StreamingResult result =
-                    need(runStreaming(scene, way, networkOf(network, options.connections)));
+                    need(runStreaming(scene, way, networkOf(network, options.connections), options.at));
+                for (std::size_t i = 0; i < result.pictures.size(); ++i)
+                    need(headless::writePng(cat(options.pictures, "/", scene.name, " ", network, " ",
+                                                way.name, " ", options.at[i], " s.png"),
+                                            result.pictures[i]));
                 if (options.each)
                     row(cloud + ", " + scene.name, network, way.name, result, 1);
                 if (sum)
@@ -164,11 +181,23 @@ int main(int argc, char** argv) {
     program.add_option("--frames", options.frames, "Cameras of a path")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
+    program.add_option("--width", options.width, "Of the picture, pixels")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
+    program.add_option("--height", options.height, "Likewise")
+        ->check(CLI::Range(16, 4096))
+        ->capture_default_str();
     program.add_option("--budget", options.budget, "Points")->capture_default_str();
     program.add_option("--spacing", options.spacing, "Of continuous detail, pixels")->capture_default_str();
     program.add_option("--connections", options.connections, "Of the client to the server")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
+    auto at =
+        program
+            .add_option("--at", options.at, "Seconds after which the first camera of a path is to be drawn")
+            ->delimiter(',');
+    at->needs(program.add_option("--pictures", options.pictures, "Folder for these pictures")
+                  ->check(CLI::ExistingDirectory));
     program.add_flag("--each", options.each, "A row for each path, too");
     CLI11_PARSE(program, argc, argv);
     std::printf(

@@ -32,12 +32,14 @@ class Run {
         session_->setStyle(way.style);
     }
 
-    Result<StreamingResult> run() {
+    Result<StreamingResult> run(const std::vector<double>& at) {
         session_->setCamera(scene_.cameras.front());
         session_->addCloud(network_.open(scene_.file, scene_.name), scene_.name);
         for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
             STIPPLE_TRY(shown, look(scene_.cameras[i]));
             judge(shown, scene_.targets[i], i == 0);
+            for (double seconds : i == 0 ? at : std::vector<double>())
+                result_.pictures.push_back(pictureAt(shown, seconds));
         }
         result_.settledError /= static_cast<double>(scene_.cameras.size());
         result_.session = session_->counters();
@@ -74,6 +76,12 @@ class Run {
         if (auto errors = session_->recentErrors(); !errors.empty())
             return errors.front();
         return shown;
+    }
+
+    Image pictureAt(std::vector<Shown>& shown, double seconds) {
+        auto later = std::find_if(shown.begin() + 1, shown.end(),
+                                  [&](const Shown& one) { return one.cost.seconds > seconds; });
+        return renderer_->render(std::prev(later)->plan);
     }
 
     // What is fetched later only adds, so the error falls, and where it passes a level is found by bisection.
@@ -139,8 +147,8 @@ StreamingResult& StreamingResult::operator+=(const StreamingResult& other) {
 }
 
 Result<StreamingResult> runStreaming(const StreamingScene& scene, const StreamingWay& way,
-                                     const NetworkOptions& network) {
-    return Run(scene, way, network).run();
+                                     const NetworkOptions& network, const std::vector<double>& at) {
+    return Run(scene, way, network).run(at);
 }
 
 Result<std::vector<Image>> targetPictures(const std::string& path, const std::vector<Camera>& cameras,

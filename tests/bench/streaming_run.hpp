@@ -52,12 +52,15 @@ struct StreamingResult {
     SessionCounters session;
     NetworkCounters network;
 
+    std::vector<Image> pictures; // what the first camera showed at the times that were asked for
+
     StreamingResult& operator+=(const StreamingResult& other); // another path of as many cameras
 };
 
+// `at`: seconds at which pictures are wanted, from setting the first camera.
 // Errors: of the session; limitExceeded if a view does not settle within an hour of the virtual clock.
 Result<StreamingResult> runStreaming(const StreamingScene& scene, const StreamingWay& way,
-                                     const NetworkOptions& network);
+                                     const NetworkOptions& network, const std::vector<double>& at = {});
 
 // The pictures of all points.
 Result<std::vector<Image>> targetPictures(const std::string& path, const std::vector<Camera>& cameras,
