@@ -168,6 +168,7 @@ describe('two viewers on a page', () => {
             const { lost, left, asked } = await round();
             assert.deepEqual([lost, left], [[true, true], [0, 0]]);
             assert.match(asked, /not in a document|disposed/);
+            for (let i = 0; i < 50 && page.workers().length > 0; i++) await page.waitForTimeout(100); // is told a little later
             assert.equal(page.workers().length, 0);
             sizes.push(await heap());
         }

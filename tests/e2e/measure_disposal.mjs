@@ -1,65 +1,88 @@
 // Two viewers on a page, made, drawn and disposed of, again and again: what is left of memory.
 //   node tests/e2e/measure_disposal.mjs [ROUNDS]      after scripts/build_web.sh and scripts/build_package.sh; 100 rounds unless told
-// Prints the page's JavaScript heap (collected), its documents and listeners, and the resident memory of the page's and the GPU's process.
-import { readFile } from 'node:fs/promises';
+// Prints the page's JavaScript heap (collected) and the resident memory of the page's and the GPU's process. The page runs by
+// itself and tells in its title how far it is: a debugger that listens to the network keeps what came of it.
+import { spawn } from 'node:child_process';
+import { mkdtemp, readdir, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 
-import { launch, openPage } from './support/browser.mjs';
+import { executable, flags } from './support/browser.mjs';
 import { installPackage } from './support/embedding.mjs';
 
 const rounds = Number(process.argv[2] ?? 100);
 
-const site = await installPackage();
-const browser = await launch();
-const { page, complaints } = await openPage(browser, { width: 900, height: 700 });
-await page.goto(`${site.address}empty.html`);
-const session = await page.context().newCDPSession(page);
-const whole = await browser.newBrowserCDPSession();
-
-async function residentBytes(kind) {
-    const { processInfo } = await whole.send('SystemInfo.getProcessInfo');
-    const sizes = await Promise.all(
-        processInfo
-            .filter(({ type }) => type === kind)
-            .map(async ({ id }) => Number(/VmRSS:\s+(\d+)/.exec(await readFile(`/proc/${id}/status`, 'utf8'))?.[1] ?? 0) * 1024),
-    );
-    return Math.max(0, ...sizes);
-}
-
-async function figures() {
-    await session.send('HeapProfiler.collectGarbage');
-    const { usedSize } = await session.send('Runtime.getHeapUsage');
-    const { documents, nodes, jsEventListeners } = await session.send('Memory.getDOMCounters');
-    const mega = (bytes) => Number((bytes / 1e6).toFixed(2));
-    return { heapMB: mega(usedSize), documents, nodes, jsEventListeners, pageMB: mega(await residentBytes('renderer')), gpuMB: mega(await residentBytes('GPU')), workers: page.workers().length };
-}
-
-/** Both viewers open, draw all they want, and are gone again. */
-const round = () =>
-    page.evaluate(async () => {
-        const row = document.querySelector('.row');
-        const viewers = ['town.stipple', 'other.stipple'].map((src) => {
-            const viewer = document.createElement('stipple-viewer');
-            viewer.setAttribute('src', src);
-            viewer.setAttribute('controls', '');
-            row.append(viewer);
-            return viewer;
-        });
-        await Promise.all(viewers.map((viewer) => viewer.whenReady()));
-        for (const viewer of viewers)
-            do await viewer.settled();
-            while (viewer.getClouds().some(({ stage }) => stage === 'opening'));
-        viewers[0].dispose();
-        row.replaceChildren();
+const script = `
+await customElements.whenDefined('stipple-viewer');
+const row = document.querySelector('.row');
+for (let round = 1; round <= ${rounds}; round++) {
+    const viewers = ['town.stipple', 'other.stipple'].map((src) => {
+        const viewer = document.createElement('stipple-viewer');
+        viewer.setAttribute('src', src);
+        viewer.setAttribute('controls', '');
+        row.append(viewer);
+        return viewer;
     });
+    await Promise.all(viewers.map((viewer) => viewer.whenReady()));
+    for (const viewer of viewers)
+        do await viewer.settled();
+        while (viewer.getClouds().some(({ stage }) => stage === 'opening'));
+    viewers[0].dispose();
+    row.replaceChildren();
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    gc();
+    document.title = round + ' ' + (performance.memory.usedJSHeapSize / 1e6).toFixed(2);
+}`;
 
-const lines = [];
-for (let i = 1; i <= rounds; i++) {
-    await round();
-    if (i <= 3 || i % Math.max(1, Math.floor(rounds / 10)) === 0) {
-        lines.push({ round: i, ...(await figures()) });
-        console.log(JSON.stringify(lines.at(-1)));
+/** Resident bytes of the largest process of a kind below `parent`. */
+async function residentMegabytes(parent, kind) {
+    let most = 0;
+    const parents = new Map();
+    const kinds = new Map();
+    for (const id of (await readdir('/proc')).filter((name) => /^\d+$/.test(name))) {
+        const read = (name) => readFile(`/proc/${id}/${name}`, 'utf8').catch(() => '');
+        const status = await read('status');
+        parents.set(id, /PPid:\s+(\d+)/.exec(status)?.[1]);
+        kinds.set(id, { command: await read('cmdline'), bytes: Number(/VmRSS:\s+(\d+)/.exec(status)?.[1] ?? 0) * 1024 });
     }
+    for (const [id, { command, bytes }] of kinds) {
+        let at = id;
+        while (at && at !== String(parent)) at = parents.get(at);
+        if (at && command.includes(`--type=${kind}`)) most = Math.max(most, bytes);
+    }
+    return Number((most / 1e6).toFixed(1));
 }
-if (complaints.length > 0) console.log('the page complained:', complaints);
-await browser.close();
+
+const site = await installPackage();
+await writeFile(join(site.folder, 'rounds.js'), script);
+const html = await readFile(join(site.folder, 'empty.html'), 'utf8');
+await writeFile(join(site.folder, 'rounds.html'), html.replace('</body>', '<script type="module" src="rounds.js"></script></body>'));
+const profile = await mkdtemp(join(tmpdir(), 'stipple-disposal-'));
+const own = ['--js-flags=--expose-gc', '--enable-precise-memory-info', '--remote-debugging-port=0', `--user-data-dir=${profile}`];
+const browser = spawn(executable, [...flags, ...own, `${site.address}rounds.html`], { stdio: ['ignore', 'ignore', 'pipe'] });
+const port = await new Promise((resolve, reject) => {
+    browser.stderr.on('data', (chunk) => {
+        const found = /DevTools listening on ws:\/\/127\.0\.0\.1:(\d+)/.exec(chunk);
+        if (found) resolve(found[1]);
+    });
+    browser.once('exit', (code) => reject(new Error(`the browser ended with ${code}`)));
+});
+
+const step = Math.max(1, Math.floor(rounds / 10));
+for (let done = 0; done < rounds; ) {
+    await new Promise((resolve) => setTimeout(resolve, 250));
+    const pages = await (await fetch(`http://127.0.0.1:${port}/json/list`)).json();
+    const title = pages.find(({ url }) => url.endsWith('rounds.html'))?.title ?? '';
+    const [round, heapMB] = title.split(' ').map(Number);
+    if (!(heapMB > 0)) continue;
+    const said = { round, heapMB };
+    if (said.round === done || (said.round < done + step && said.round < rounds && said.round > 3)) continue;
+    done = said.round;
+    const [pageMB, gpuMB] = [await residentMegabytes(browser.pid, 'renderer'), await residentMegabytes(browser.pid, 'gpu-process')];
+    console.log(JSON.stringify({ ...said, pageMB, gpuMB }));
+}
+const ended = new Promise((resolve) => browser.removeAllListeners('exit').once('exit', resolve));
+browser.kill();
+await ended;
+await rm(profile, { recursive: true, force: true, maxRetries: 5 });
 await site.close();

@@ -29,6 +29,15 @@ function pixelOf({ position, target, up, fovYDegrees }, world) {
     const scale = 300 / (Math.tan((fovYDegrees * Math.PI) / 360) * depth);
     return { x: 450 + dot(away, right) * scale, y: 300 - dot(away, above) * scale };
 }
+/** Where the camera is once it has stood still for longer than it takes to be remembered. */
+async function rest() {
+    for (;;) {
+        const before = JSON.stringify(await camera());
+        await page.waitForTimeout(800);
+        const now = await camera();
+        if (JSON.stringify(now) === before) return now;
+    }
+}
 const apart = (a, b) => Math.hypot(a.x - b.x, a.y - b.y);
 
 async function drag(from, to, button = 'left') {
@@ -87,9 +96,7 @@ describe('moving about', () => {
             (wanted) => Math.hypot(...window.stipple.camera().target.map((v, i) => v - wanted[i])) < 1e-6,
             place,
         );
-        await settle(page);
-        await page.waitForTimeout(700);
-        const near = await camera();
+        const near = await rest();
         assert.ok(apart(pixelOf(near, place), { x: 450, y: 300 }) < 1e-3);
         const reached = (wanted) =>
             page.waitForFunction((json) => JSON.stringify(window.stipple.camera()) === json, JSON.stringify(wanted));
@@ -98,12 +105,10 @@ describe('moving about', () => {
         await page.locator('canvas').press('Shift+U');
         await reached(near);
         await page.locator('canvas').press('f');
-        await page.waitForTimeout(1500);
-        const all = await camera();
+        const all = await rest();
         assert.ok(norm(minus(all.target, all.position)) > 1.5 * norm(minus(near.target, near.position)));
         await page.getByRole('button', { name: 'town', exact: true }).click();
-        await page.waitForTimeout(1500);
-        assert.ok(norm(minus((await camera()).position, all.position)) < 1e-6);
+        assert.ok(norm(minus((await rest()).position, all.position)) < 1e-6);
         assert.equal(await page.getByRole('button', { name: 'Back' }).isEnabled(), true);
         await keepScreenshot(page, 'navigated');
     });

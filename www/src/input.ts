@@ -3,14 +3,15 @@ import type { Model } from './model.ts';
 /** Pixels of one press of an arrow key. */
 const keyStep = 40;
 const keyZoom = 0.8;
-/** A pointer that moves no farther, in pixels, between down and up is a click. */
+/** A pointer that moves no farther, in pixels, between down and up is a click; fingers are less steady. */
 const clickSlop = 3;
+const tapSlop = 10;
 
 /**
  * Pointer, wheel, touch and keys on the canvas become steps of the camera (navigation/navigator.ts). Left drag or one finger turns, or
- * moves the ground; right, middle or shift drag does the other; two fingers pan; wheel and pinch zoom to the pointer; a double click flies
+ * moves the ground; right, middle or shift drag and three fingers do the other; two fingers pan; wheel and pinch zoom to the pointer; a double click flies
  * to the point there, F to all, U goes back and shift U forth; a click asks about the point, Escape lets go of it.
- * With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
+ * The space bar is a click in the middle. With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     const { annotations, measuring, navigator } = model;
@@ -18,13 +19,21 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         const place = await model.picking.place(x, y);
         if (place) annotations.add(place);
     };
+    /** What a click does there, or the space bar in the middle. */
+    const act = (x: number, y: number): void => {
+        if (measuring.isDrawing) void measuring.click(x, y);
+        else if (annotations.isPlacing) void putAnnotation(x, y);
+        else void model.picking.show(x, y);
+    };
     const fingers = new Map<number, { x: number; y: number }>();
     /** Where the one pointer went down; none once it has moved, or another came. */
     let pressed: { x: number; y: number } | undefined;
 
-    const pinch = (): { x: number; y: number; spread: number } => {
-        const [a, b] = [...fingers.values()] as [{ x: number; y: number }, { x: number; y: number }];
-        return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, spread: Math.hypot(a.x - b.x, a.y - b.y) };
+    /** The middle of all fingers, and how far apart the first two are. */
+    const middleOfFingers = (): { x: number; y: number; spread: number } => {
+        const all = [...fingers.values()], [a, b] = all;
+        const mean = (axis: 'x' | 'y'): number => all.reduce((sum, finger) => sum + finger[axis], 0) / all.length;
+        return { x: mean('x'), y: mean('y'), spread: a && b ? Math.hypot(a.x - b.x, a.y - b.y) : 0 };
     };
     const place = (event: PointerEvent | WheelEvent): { x: number; y: number } => {
         const box = canvas.getBoundingClientRect();
@@ -37,6 +46,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         fingers.set(event.pointerId, place(event));
         pressed = fingers.size === 1 && event.button === 0 ? place(event) : undefined;
         if (fingers.size === 1) navigator.press(place(event), event.shiftKey || event.button !== 0);
+        if (fingers.size === 3) navigator.press(middleOfFingers(), true);
         event.preventDefault();
     });
 
@@ -45,11 +55,13 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         const to = place(event);
         navigator.hover(to);
         if (!from) return;
-        if (pressed && Math.hypot(to.x - pressed.x, to.y - pressed.y) > clickSlop) pressed = undefined;
-        if (fingers.size === 2) {
-            const before = pinch();
+        const slop = event.pointerType === 'touch' ? tapSlop : clickSlop;
+        if (pressed && Math.hypot(to.x - pressed.x, to.y - pressed.y) > slop) pressed = undefined;
+        if (fingers.size > 1) {
+            const before = middleOfFingers();
             fingers.set(event.pointerId, to);
-            const after = pinch();
+            const after = middleOfFingers();
+            if (fingers.size > 2) return navigator.drag(before, after, true);
             model.camera.pan(after.x - before.x, after.y - before.y);
             if (before.spread > 0 && after.spread > 0) model.camera.zoom(before.spread / after.spread, after.x, after.y);
             return;
@@ -63,9 +75,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     };
     canvas.addEventListener('pointerup', (event) => {
         lift(event);
-        if (pressed && measuring.isDrawing) void measuring.click(pressed.x, pressed.y);
-        else if (pressed && annotations.isPlacing) void putAnnotation(pressed.x, pressed.y);
-        else if (pressed) void model.picking.show(pressed.x, pressed.y);
+        if (pressed) act(pressed.x, pressed.y);
         pressed = undefined;
     });
     canvas.addEventListener('pointercancel', lift);
@@ -110,11 +120,8 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             f: () => void model.camera.flyToCloud(),
             u: () => model.camera.back(),
             U: () => model.camera.forward(),
-            Escape: () => {
-                if (measuring.isDrawing) measuring.stop();
-                else if (annotations.isPlacing) annotations.place();
-                else model.picking.forget();
-            },
+            ' ': () => act(middle.x, middle.y),
+            Escape: () => model.letGo(),
             ...(measuring.isDrawing && {
                 Enter: () => measuring.finish(),
                 Backspace: () => measuring.takeBack(),

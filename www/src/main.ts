@@ -8,7 +8,9 @@ async function start(): Promise<void> {
     const viewer = document.createElement('stipple-viewer');
     const attributes = { server: './', share: location.href.replace(/#.*/, ''), lang: query.get('lang'), theme: query.get('theme'), controls: '' };
     for (const [name, value] of Object.entries(attributes)) if (value !== null) viewer.setAttribute(name, value);
-    document.body.append(viewer);
+    const main = document.createElement('main');
+    main.append(viewer);
+    document.body.append(main);
     await viewer.whenReady();
     const model = StippleViewer.modelOf(viewer);
     document.documentElement.lang = model.texts.locale;

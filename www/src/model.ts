@@ -156,6 +156,13 @@ export class Model extends EventTarget {
         this.changed();
     }
 
+    /** Of the tool in hand, or of the point that is told about. */
+    letGo(): void {
+        if (this.measuring.isDrawing) this.measuring.stop();
+        else if (this.annotations.isPlacing) this.annotations.place();
+        else this.picking.forget();
+    }
+
     measure(request: MeasureRequest): MeasureAnswer {
         return this.viewer.measure(request);
     }

@@ -3,7 +3,8 @@ import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 
-const flags = [
+/** Of every start: no window, WebGL in software, no outside host. */
+export const flags = [
     '--no-sandbox',
     '--headless=new',
     '--use-angle=swiftshader',
@@ -16,11 +17,10 @@ const flags = [
     '--disable-quic',
 ];
 
+export const executable = process.env.STIPPLE_CHROMIUM ?? '/usr/bin/chromium';
+
 export function launch() {
-    return chromium.launch({
-        executablePath: process.env.STIPPLE_CHROMIUM ?? '/usr/bin/chromium',
-        args: flags,
-    });
+    return chromium.launch({ executablePath: executable, args: flags });
 }
 
 /** A page of its own; `complaints` collects what it logs as an error and every uncaught exception. */
@@ -65,5 +65,6 @@ export async function keepScreenshot(page, name) {
     const folder = process.env.STIPPLE_E2E_PICTURES;
     if (!folder) return;
     await mkdir(folder, { recursive: true });
-    await page.screenshot({ path: join(folder, `${name}.jpg`), type: 'jpeg', quality: 82, caret: 'initial' }); // hiding the caret takes a style that the page's policy forbids
+    // Hiding the caret would take a style that the page's policy forbids.
+    await page.screenshot({ path: join(folder, `${name}.jpg`), type: 'jpeg', quality: 82, caret: 'initial' });
 }

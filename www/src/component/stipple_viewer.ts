@@ -201,11 +201,11 @@ export class StippleViewer extends HTMLElement {
     }
 
     private addCanvas(): HTMLCanvasElement {
-        const canvas = document.createElement('canvas'), ring = document.createElement('div');
+        const canvas = document.createElement('canvas');
+        const [ring, cross] = ['ring', 'cross'].map((name) => Object.assign(document.createElement('div'), { className: name }));
         canvas.tabIndex = 0;
         canvas.setAttribute('role', 'application');
-        ring.className = 'ring';
-        this.root.replaceChildren(canvas, ring);
+        this.root.replaceChildren(canvas, ring!, cross!);
         return canvas;
     }
 

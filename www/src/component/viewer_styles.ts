@@ -58,6 +58,22 @@ export const viewerStyles = css`
             inset 0 0 0 2px var(--accent),
             inset 0 0 0 4px var(--panel-solid);
     }
+    /* Where the space bar clicks. */
+    .cross {
+        display: none;
+        position: absolute;
+        inset: calc(50% - 9px) auto auto calc(50% - 9px);
+        width: 18px;
+        height: 18px;
+        pointer-events: none;
+        background:
+            linear-gradient(#fff, #fff) center / 2px 100% no-repeat,
+            linear-gradient(#fff, #fff) center / 100% 2px no-repeat;
+        filter: drop-shadow(0 0 1px #000) drop-shadow(0 0 1px #000);
+    }
+    canvas:focus-visible ~ .cross {
+        display: block;
+    }
     .failure {
         box-sizing: border-box;
         position: relative;

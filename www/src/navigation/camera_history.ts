@@ -13,6 +13,11 @@ export class CameraHistory {
         return this.at < this.places.length - 1;
     }
 
+    /** Where it rested last, or has gone back or forth to. */
+    get here(): Camera | undefined {
+        return this.places[this.at];
+    }
+
     /** The camera rests here. What was ahead is forgotten, unless it came here by going back or forth. */
     rest(camera: Camera): void {
         if (this.at >= 0 && same(this.places[this.at]!, camera)) return;

@@ -12,6 +12,8 @@ const flightMs = 800;
 export class CameraMoves {
     readonly history = new CameraHistory();
     isFlying = false;
+    /** The flight goes away from a place to come back to, not to one. */
+    private isLeaving = false;
     private lastFlight = 0;
     private rememberTimer: ReturnType<typeof setTimeout> | undefined;
 
@@ -76,21 +78,24 @@ export class CameraMoves {
     /** To where the point is in the middle, at a part of the distance. */
     flyToPoint(point: Vector, part: number): Promise<void> {
         this.rememberNow();
+        this.isLeaving = true;
         return this.fly(this.viewer.flyToPoint(point, part));
     }
     /** To where all of the cloud shows; of all clouds without an id. */
     flyToCloud(id = 0): Promise<void> {
         this.rememberNow();
+        this.isLeaving = true;
         return this.fly(this.viewer.flyToCloud(id));
     }
     flyToCamera(camera: object): Promise<void> {
+        this.isLeaving = false;
         this.viewer.flyToCamera(camera);
         return this.fly(1);
     }
 
     back(): void {
         this.rememberNow();
-        const camera = this.history.back();
+        const camera = this.isFlying && this.isLeaving ? this.history.here : this.history.back();
         if (camera) void this.flyToCamera(camera);
     }
     forward(): void {
@@ -108,6 +113,7 @@ export class CameraMoves {
     rememberSoon(): void {
         clearTimeout(this.rememberTimer);
         this.rememberTimer = setTimeout(() => {
+            if (this.isFlying) return this.rememberSoon(); // its frames are far apart
             this.history.rest(this.viewer.camera());
             this.model.dispatchEvent(new Event('rest'));
             this.model.changed();

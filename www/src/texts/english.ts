@@ -5,7 +5,7 @@
  */
 export const english = {
     'page.canvas':
-        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
+        'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, the space bar clicks in the middle, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
     'page.cannotStart': "Stipple can't start: {reason}",
     'page.badBudget': 'The attribute budget is not a number of points: {value}',
     'page.contextLost': 'The browser has taken the graphics away. The picture comes back as soon as it gives them back; if it does not, load the page anew.',
@@ -44,6 +44,7 @@ export const english = {
     'measure.azimuth': 'Azimuth',
     'measure.point': 'Point',
     'measure.numbered': '{kind} {number}',
+    'measure.said': '{name}: {values}',
     'measure.unit': 'Unit',
     'measure.hintOpen': 'Click points; a double click or Enter ends, Backspace takes the last one back, Escape gives up.',
     'measure.hintPoints': { one: 'Click a point; Escape gives up.', other: 'Click {count} points; Escape gives up.' },
@@ -88,7 +89,7 @@ export const english = {
     'clip': 'Clip boxes',
     'clip.new': 'New box',
     'clip.box': 'Box {number}',
-    'clip.edit': 'Edit {name}',
+    'clip.edit': 'Handles of {name}',
     'clip.handles': 'Handles',
     'clip.delete': 'Delete {name}',
     'clip.mode': 'Mode',

@@ -2,7 +2,7 @@ import { translation } from './message.ts';
 
 export const french = translation({
     'page.canvas':
-        'Nuage de points. Les flèches tournent, maj et les flèches déplacent, plus et moins zooment, 1, 2, 3 et 4 montrent les vues de dessus, de face, isométrique et de côté, F montre tout, U revient en arrière.',
+        'Nuage de points. Les flèches tournent, maj et les flèches déplacent, plus et moins zooment, la barre d’espace clique au milieu, 1, 2, 3 et 4 montrent les vues de dessus, de face, isométrique et de côté, F montre tout, U revient en arrière.',
     'page.cannotStart': 'Stipple ne peut pas démarrer : {reason}',
     'page.badBudget': 'L’attribut budget n’est pas un nombre de points : {value}',
     'page.contextLost':
@@ -42,6 +42,7 @@ export const french = translation({
     'measure.azimuth': 'Azimut',
     'measure.point': 'Point',
     'measure.numbered': '{kind} {number}',
+    'measure.said': '{name} : {values}',
     'measure.unit': 'Unité',
     'measure.hintOpen':
         'Cliquez des points ; un double clic ou Entrée termine, Retour arrière retire le dernier, Échap abandonne.',
@@ -90,7 +91,7 @@ export const french = translation({
     'clip': 'Boîtes de découpe',
     'clip.new': 'Nouvelle boîte',
     'clip.box': 'Boîte {number}',
-    'clip.edit': 'Modifier {name}',
+    'clip.edit': 'Poignées de {name}',
     'clip.handles': 'Poignées',
     'clip.delete': 'Supprimer {name}',
     'clip.mode': 'Mode',

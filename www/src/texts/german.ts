@@ -2,7 +2,7 @@ import { translation } from './message.ts';
 
 export const german = translation({
     'page.canvas':
-        'Punktwolke. Pfeiltasten drehen, Umschalt und Pfeiltasten verschieben, Plus und Minus zoomen, 1, 2, 3 und 4 zeigen Draufsicht, Vorderansicht, Schrägansicht und Seitenansicht, F zeigt alles, U geht zurück.',
+        'Punktwolke. Pfeiltasten drehen, Umschalt und Pfeiltasten verschieben, Plus und Minus zoomen, die Leertaste klickt in die Mitte, 1, 2, 3 und 4 zeigen Draufsicht, Vorderansicht, Schrägansicht und Seitenansicht, F zeigt alles, U geht zurück.',
     'page.cannotStart': 'Stipple kann nicht starten: {reason}',
     'page.badBudget': 'Das Attribut budget ist keine Anzahl von Punkten: {value}',
     'page.contextLost':
@@ -42,6 +42,7 @@ export const german = translation({
     'measure.azimuth': 'Azimut',
     'measure.point': 'Punkt',
     'measure.numbered': '{kind} {number}',
+    'measure.said': '{name}: {values}',
     'measure.unit': 'Einheit',
     'measure.hintOpen':
         'Punkte anklicken; Doppelklick oder Eingabetaste beendet, Rücktaste nimmt den letzten zurück, Escape bricht ab.',
@@ -90,7 +91,7 @@ export const german = translation({
     'clip': 'Ausschnitte',
     'clip.new': 'Neuer Quader',
     'clip.box': 'Quader {number}',
-    'clip.edit': '{name} bearbeiten',
+    'clip.edit': 'Griffe von {name}',
     'clip.handles': 'Griffe',
     'clip.delete': '{name} löschen',
     'clip.mode': 'Wirkung',

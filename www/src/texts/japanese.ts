@@ -2,7 +2,7 @@ import { translation } from './message.ts';
 
 export const japanese = translation({
     'page.canvas':
-        '点群。矢印キーで回転、Shift と矢印キーで移動、プラスとマイナスで拡大縮小、1、2、3、4 で上面、正面、等角、側面を表示、F で全体を表示、U で前の視点に戻ります。',
+        '点群。矢印キーで回転、Shift と矢印キーで移動、プラスとマイナスで拡大縮小、スペースキーで中央をクリック、1、2、3、4 で上面、正面、等角、側面を表示、F で全体を表示、U で前の視点に戻ります。',
     'page.cannotStart': 'Stipple を開始できません: {reason}',
     'page.badBudget': '属性 budget が点の数ではありません: {value}',
     'page.contextLost':
@@ -42,6 +42,7 @@ export const japanese = translation({
     'measure.azimuth': '方位角',
     'measure.point': '点',
     'measure.numbered': '{kind} {number}',
+    'measure.said': '{name}: {values}',
     'measure.unit': '単位',
     'measure.hintOpen':
         '点をクリックしてください。ダブルクリックまたは Enter で終了、Backspace で最後の点を取り消し、Esc で中止します。',
@@ -86,7 +87,7 @@ export const japanese = translation({
     'clip': 'クリップボックス',
     'clip.new': '新しいボックス',
     'clip.box': 'ボックス {number}',
-    'clip.edit': '{name} を編集',
+    'clip.edit': '{name} のハンドル',
     'clip.handles': 'ハンドル',
     'clip.delete': '{name} を削除',
     'clip.mode': 'モード',

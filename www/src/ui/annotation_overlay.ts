@@ -19,6 +19,7 @@ export class AnnotationOverlay extends OverlayElement {
                 border: 1px solid var(--line);
                 border-radius: 999px;
                 padding: 0.15rem 0.7rem;
+                min-height: 24px;
                 cursor: pointer;
                 max-width: 14rem;
                 overflow: hidden;
@@ -95,7 +96,13 @@ export class AnnotationOverlay extends OverlayElement {
         const shown = annotations.items.filter((item) => annotations.isShown(item));
         if (shown.length === 0) return '';
         const places = this.model.surface.project(shown.map((item) => item.position));
-        return html`${shown.map((item, i) => (places[i] ? this.renderItem(item, places[i]) : ''))}`;
+        return html`${shown.map((item, i) => (this.isSeen(places[i]) ? this.renderItem(item, places[i]!) : ''))}`;
+    }
+
+    /** The Tab key goes to no label that is out of the picture. */
+    private isSeen(place: { x: number; y: number } | null | undefined): boolean {
+        const { clientWidth, clientHeight } = this.model.canvas;
+        return !!place && place.x >= 0 && place.y >= 0 && place.x <= clientWidth && place.y <= clientHeight;
     }
 
     private renderItem(item: Annotation, { x, y }: { x: number; y: number }): TemplateResult {

@@ -23,7 +23,8 @@ export class AnnotationPanel extends ModelElement {
                 padding: 0;
             }
             ul ul {
-                margin: 0 0 0 0.9rem;
+                margin: 0;
+                margin-inline-start: 0.9rem;
             }
             .head {
                 display: grid;
@@ -34,11 +35,11 @@ export class AnnotationPanel extends ModelElement {
             .head button {
                 background: none;
                 border-color: transparent;
-                min-height: 1.7rem;
+                min-height: 1.75rem;
                 padding: 0 0.35rem;
             }
             .title {
-                text-align: left;
+                text-align: start;
                 overflow: hidden;
                 text-overflow: ellipsis;
             }
@@ -70,7 +71,7 @@ export class AnnotationPanel extends ModelElement {
                 gap: 0.3rem;
             }
             .ways button {
-                min-height: 1.7rem;
+                min-height: 1.75rem;
                 font-size: 0.82rem;
                 padding: 0 0.5rem;
             }
@@ -92,11 +93,16 @@ export class AnnotationPanel extends ModelElement {
         const { annotations } = this.model;
         return html`<fieldset>
             <legend>${this.text('annotations')}</legend>
-            <button class="add" aria-pressed=${annotations.isPlacing} @click=${() => annotations.place()}>
+            <button class="add" aria-pressed=${annotations.isPlacing} @click=${() => this.place()}>
                 ${this.text(annotations.isPlacing ? 'annotations.placing' : 'annotations.new')}
             </button>
             ${this.renderList(0)}
         </fieldset>`;
+    }
+
+    private place(): void {
+        this.model.annotations.place();
+        this.model.canvas.focus({ preventScroll: true });
     }
 
     private renderList(parent: number): TemplateResult | string {

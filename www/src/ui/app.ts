@@ -126,9 +126,12 @@ export class App extends ModelElement {
                 color: var(--muted);
                 white-space: nowrap;
             }
+            .status span {
+                unicode-bidi: plaintext;
+            }
             .status button {
                 border-radius: 999px;
-                min-height: 1.7rem;
+                min-height: 1.75rem;
             }
             progress {
                 appearance: none;
@@ -152,9 +155,8 @@ export class App extends ModelElement {
             }
             .notices {
                 position: absolute;
-                left: 50%;
-                top: 12px;
-                transform: translateX(-50%);
+                inset: 12px 0 auto;
+                margin-inline: auto;
                 width: min(520px, 100% - 24px);
                 display: grid;
                 gap: 8px;
@@ -216,6 +218,11 @@ export class App extends ModelElement {
                     grid-column: 1;
                     grid-row: 1;
                 }
+                /* One at a time. */
+                .counters:has(~ .point, ~ .profile),
+                .point ~ .profile {
+                    display: none;
+                }
                 .status {
                     grid-column: 1;
                     grid-row: 2;
@@ -230,10 +237,17 @@ export class App extends ModelElement {
     ];
 
     private readonly follow = (): void => this.requestUpdate();
+    /** Escape lets go of what is in hand, from every panel, and goes back to the picture. */
+    private readonly escape = (event: KeyboardEvent): void => {
+        if (event.key !== 'Escape' || event.defaultPrevented) return;
+        this.model.letGo();
+        this.model.canvas.focus({ preventScroll: true });
+    };
 
     override connectedCallback(): void {
         super.connectedCallback();
         this.model.profile.addEventListener('change', this.follow);
+        this.addEventListener('keydown', this.escape);
         this.panelIsOpen = this.model.canvas.clientWidth > narrow;
     }
     override disconnectedCallback(): void {
@@ -261,7 +275,7 @@ export class App extends ModelElement {
     private renderPanels(): TemplateResult {
         return html`${this.renderControls()}
             ${this.countersAreOpen
-                ? html`<aside class="panel counters" aria-label=${this.text('counters')}>
+                ? html`<aside class="panel counters" tabindex="0" aria-label=${this.text('counters')}>
                       <stipple-counters .model=${this.model}></stipple-counters>
                   </aside>`
                 : ''}

@@ -63,7 +63,7 @@ export class ClipPanel extends ModelElement {
             }
             .files a {
                 color: var(--accent);
-                margin-left: 0.4rem;
+                margin-inline-start: 0.4rem;
             }
             .add {
                 width: 100%;

@@ -32,7 +32,7 @@ export class CloudList extends ModelElement {
                 display: grid;
                 grid-template-columns: 1fr auto;
                 width: 100%;
-                text-align: left;
+                text-align: start;
                 align-items: center;
                 padding: 0.5rem 0.6rem;
                 border-style: dashed;
@@ -45,11 +45,11 @@ export class CloudList extends ModelElement {
             button.name {
                 display: block;
                 width: 100%;
-                min-height: 0;
+                min-height: 24px;
                 padding: 0;
                 border: 0;
                 background: none;
-                text-align: left;
+                text-align: start;
             }
             button.name:hover {
                 text-decoration: underline;

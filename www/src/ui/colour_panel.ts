@@ -71,6 +71,7 @@ export class ColourPanel extends ModelElement {
                 border-radius: 6px;
             }
             textarea {
+                direction: ltr;
                 min-height: 5rem;
                 padding: 0.4rem;
                 font:
@@ -88,7 +89,7 @@ export class ColourPanel extends ModelElement {
                 grid-template-columns: auto auto 1fr auto;
                 align-items: center;
                 gap: 0.5rem;
-                min-height: 1.7rem;
+                min-height: 1.75rem;
             }
             .swatch {
                 width: 0.9rem;

@@ -26,7 +26,7 @@ export class CountersPanel extends ModelElement {
             }
             dd {
                 margin: 0;
-                text-align: right;
+                text-align: end;
                 font-variant-numeric: tabular-nums;
             }
         `,

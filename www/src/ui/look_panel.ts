@@ -5,6 +5,7 @@ import { css, html, type TemplateResult } from 'lit';
 import { choice, slider } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
+import { followToolbarKeys, keepToolbarStop, stopOf } from './toolbar.ts';
 
 
 /** How the clouds are looked at: view, points, colour, light. */
@@ -40,20 +41,26 @@ export class LookPanel extends ModelElement {
         const { model } = this;
         return html`<fieldset>
             <legend>${this.text('view')}</legend>
-            <div class="views">
-                <button @click=${() => model.camera.showView('top')}>${this.text('view.top')}</button>
-                <button @click=${() => model.camera.showView('front')}>${this.text('view.front')}</button>
-                <button @click=${() => model.camera.showView('side')}>${this.text('view.side')}</button>
-                <button @click=${() => model.camera.showView('iso')}>${this.text('view.iso')}</button>
-                <button title=${this.text('view.allHint')} @click=${() => void model.camera.flyToCloud()}>${this.text('view.all')}</button>
-                <button
+            <div
+                class="views"
+                role="toolbar"
+                aria-label=${this.text('view')}
+                @keydown=${followToolbarKeys}
+                @focusin=${keepToolbarStop}
+            >
+                <button tabindex=${stopOf(0)} @click=${() => model.camera.showView('top')}>${this.text('view.top')}</button>
+                <button tabindex=${stopOf(1)} @click=${() => model.camera.showView('front')}>${this.text('view.front')}</button>
+                <button tabindex=${stopOf(2)} @click=${() => model.camera.showView('side')}>${this.text('view.side')}</button>
+                <button tabindex=${stopOf(3)} @click=${() => model.camera.showView('iso')}>${this.text('view.iso')}</button>
+                <button tabindex=${stopOf(4)} title=${this.text('view.allHint')} @click=${() => void model.camera.flyToCloud()}>${this.text('view.all')}</button>
+                <button tabindex=${stopOf(5)}
                     title=${this.text('view.backHint')}
                     ?disabled=${!model.camera.history.canGoBack}
                     @click=${() => model.camera.back()}
                 >
                     ${this.text('view.back')}
                 </button>
-                <button
+                <button tabindex=${stopOf(6)}
                     title=${this.text('view.forthHint')}
                     ?disabled=${!model.camera.history.canGoForward}
                     @click=${() => model.camera.forward()}

@@ -8,6 +8,7 @@ import { displayUnits } from '../measuring/units.ts';
 import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
+import { followToolbarKeys, keepToolbarStop, stopOf } from './toolbar.ts';
 
 /** The measuring tools, and what was measured. */
 export class MeasurePanel extends ModelElement {
@@ -66,7 +67,7 @@ export class MeasurePanel extends ModelElement {
                 background: none;
                 border-color: transparent;
                 color: var(--muted);
-                min-height: 1.7rem;
+                min-height: 1.75rem;
                 padding: 0 0.35rem;
                 font-size: 0.8rem;
             }
@@ -83,14 +84,14 @@ export class MeasurePanel extends ModelElement {
             }
             dd {
                 margin: 0;
-                text-align: right;
+                text-align: end;
                 font-variant-numeric: tabular-nums;
             }
             dd small {
                 color: var(--muted);
             }
             .section {
-                min-height: 1.6rem;
+                min-height: 1.75rem;
                 font-size: 0.82rem;
                 margin-top: 0.2rem;
             }
@@ -127,10 +128,17 @@ export class MeasurePanel extends ModelElement {
         const { measuring } = this;
         return html`<fieldset>
             <legend>${this.text('measure')}</legend>
-            <div class="tools">
+            <div
+                class="tools"
+                role="toolbar"
+                aria-label=${this.text('measure')}
+                @keydown=${followToolbarKeys}
+                @focusin=${keepToolbarStop}
+            >
                 ${kindsOfMeasurement.map(
-                    ({ kind }) =>
+                    ({ kind }, index) =>
                         html`<button
+                            tabindex=${stopOf(index)}
                             aria-pressed=${measuring.drawnKind === kind}
                             @click=${() => this.take(kind)}
                         >
@@ -139,6 +147,7 @@ export class MeasurePanel extends ModelElement {
                 )}
             </div>
             ${this.renderHint()}
+            <p class="unseen" role="status">${this.latest()}</p>
             ${measuring.items.length > 0
                 ? html`${select(
                           this.text('measure.unit'),
@@ -157,6 +166,14 @@ export class MeasurePanel extends ModelElement {
                       </div>`
                 : ''}
         </fieldset>`;
+    }
+
+    /** What was measured last, for those who do not see it appear. */
+    private latest(): string {
+        const item = this.measuring.items.at(-1);
+        if (!item?.answer) return '';
+        const lines = resultLines(item, this.measuring.unit, this.texts).map(({ name, value }) => `${name} ${value}`);
+        return this.text('measure.said', { name: item.name, values: this.texts.list(lines) });
     }
 
     private take(kind: Measurement['kind']): void {

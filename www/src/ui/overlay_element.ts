@@ -12,6 +12,10 @@ export abstract class OverlayElement extends ModelElement {
             overflow: hidden;
             z-index: -1;
         }
+        :focus-visible {
+            outline: 2px solid var(--accent);
+            outline-offset: 2px;
+        }
         svg {
             width: 100%;
             height: 100%;

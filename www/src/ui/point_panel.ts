@@ -30,7 +30,7 @@ export class PointPanel extends ModelElement {
             }
             dd {
                 margin: 0;
-                text-align: right;
+                text-align: end;
                 font-variant-numeric: tabular-nums;
                 overflow-wrap: anywhere;
             }

@@ -51,13 +51,14 @@ export class ProfilePanel extends ModelElement {
                 color: var(--accent);
             }
             .bar button {
-                min-height: 1.6rem;
+                min-height: 1.75rem;
             }
             .state {
+                unicode-bidi: plaintext;
                 color: var(--muted);
             }
             .close {
-                margin-left: auto;
+                margin-inline-start: auto;
             }
             .view {
                 position: relative;
@@ -190,6 +191,7 @@ export class ProfilePanel extends ModelElement {
         const { area } = this;
         if (!area) return;
         const width = area.clientWidth, height = area.clientHeight;
+        if (width === 0 || height === 0) return; // hidden, on a narrow page
         const isNew = this.profile.length !== this.fittedLength && this.profile.points.count > 0;
         if (!this.shown || isNew || this.shown.width !== width || this.shown.height !== height) {
             if (isNew) this.fittedLength = this.profile.length;

@@ -26,6 +26,7 @@ export class ScenePanel extends ModelElement {
                 display: none;
             }
             .link {
+                direction: ltr;
                 width: 100%;
                 margin-top: 0.5rem;
                 font: inherit;

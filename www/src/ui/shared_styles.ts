@@ -11,6 +11,15 @@ export const controlStyles = css`
     *::after {
         box-sizing: border-box;
     }
+    .unseen {
+        position: absolute;
+        width: 1px;
+        height: 1px;
+        margin: -1px;
+        overflow: hidden;
+        clip-path: inset(50%);
+        white-space: nowrap;
+    }
     [hidden] {
         display: none !important;
     }
@@ -44,8 +53,13 @@ export const controlStyles = css`
         align-items: center;
         gap: 0.5rem;
     }
+    /* Numbers before their units, also where text runs from right to left. */
+    dd,
     output {
-        text-align: right;
+        unicode-bidi: plaintext;
+    }
+    output {
+        text-align: end;
         color: var(--muted);
         font-variant-numeric: tabular-nums;
         white-space: nowrap;
@@ -87,6 +101,11 @@ export const controlStyles = css`
     :focus-visible {
         outline: 2px solid var(--accent);
         outline-offset: 2px;
+    }
+    /* A finger's least target (WCAG 2.2, 2.5.8). */
+    input:not([type='checkbox'], [type='radio'], [type='file']),
+    textarea {
+        min-block-size: 24px;
     }
     .choice {
         display: flex;
