@@ -34,3 +34,11 @@ endif()
 if(STIPPLE_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
+
+# Sources of the current folder in which no loop over points runs: as WebAssembly they are compiled for size, which a page's visitors
+# wait for. (Elsewhere as everything else is.)
+function(stipple_compact)
+  if(EMSCRIPTEN)
+    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -Oz)
+  endif()
+endfunction()
