@@ -17,11 +17,11 @@ namespace {
 constexpr const char* revalidated = "no-cache";
 constexpr const char* immutable = "public, max-age=31536000, immutable";
 
-// What our own page needs: its scripts, WebAssembly, workers (also from blobs), styles that Lit sets, clouds
-// of other servers; nothing else, and no foreign page around it.
+// What our own page needs: its scripts, WebAssembly, workers, style sheets, clouds of other servers; nothing
+// else, and no foreign page around it.
 constexpr const char* contentSecurityPolicy =
-    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; "
-    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; connect-src 'self' blob: data: http: "
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; "
+    "style-src 'self'; img-src 'self' data: blob:; connect-src 'self' blob: data: http: "
     "https:; "
     "object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
 
