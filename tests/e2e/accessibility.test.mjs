@@ -112,6 +112,14 @@ describe('by the keyboard alone', () => {
         await settle(page);
         await page.keyboard.press(' ');
         await page.getByRole('complementary', { name: 'Point' }).waitFor();
+        await tabTo(page, 'Help');
+        await page.keyboard.press('Enter');
+        await page.getByRole('dialog', { name: 'Help' }).waitFor();
+        assert.equal((await focused(page)).name, 'Close the help');
+        await keepScreenshot(page, 'help');
+        await page.keyboard.press('Escape');
+        await page.getByRole('dialog').waitFor({ state: 'detached' });
+        assert.equal((await focused(page)).name, 'Help');
         await tabTo(page, 'Link');
         await page.keyboard.press('Enter');
         await page.getByLabel('Link to this scene').waitFor();
@@ -125,6 +133,9 @@ describe('by the keyboard alone', () => {
         await page.evaluate(() => window.stipple.setLimits({ pointBudget: -1 })); // a notice, too
         await page.getByRole('alert').first().waitFor();
         await checkAxe('all_panels');
+        await page.getByRole('button', { name: 'Help' }).click();
+        await checkAxe('help');
+        await page.keyboard.press('Escape');
         await page.getByRole('button', { name: 'Dismiss' }).first().click();
         await page.keyboard.press('Escape');
     });

@@ -25,11 +25,13 @@ export class App extends ModelElement {
         ...ModelElement.properties,
         panelIsOpen: { state: true },
         countersAreOpen: { state: true },
+        helpIsOpen: { state: true },
         isDropTarget: { attribute: false },
         hasControls: { attribute: false },
     };
     declare panelIsOpen: boolean;
     declare countersAreOpen: boolean;
+    declare helpIsOpen: boolean;
     declare isDropTarget: boolean;
     declare hasControls: boolean;
 
@@ -86,6 +88,9 @@ export class App extends ModelElement {
                 font-weight: 650;
                 letter-spacing: 0.01em;
             }
+            .ask {
+                margin-inline-start: auto;
+            }
             .quiet {
                 background: none;
                 border-color: transparent;
@@ -103,6 +108,17 @@ export class App extends ModelElement {
                 justify-self: end;
                 align-self: end;
                 width: 270px;
+            }
+            .help {
+                position: absolute;
+                inset: 12px;
+                width: fit-content;
+                max-width: min(46rem, 100% - 24px);
+                height: fit-content;
+                max-height: calc(100% - 24px);
+                margin: auto;
+                z-index: 1;
+                background: var(--panel-solid);
             }
             .profile {
                 grid-column: 2 / 4;
@@ -237,9 +253,13 @@ export class App extends ModelElement {
     ];
 
     private readonly follow = (): void => this.requestUpdate();
+    private readonly ask = (event: KeyboardEvent): void => {
+        if (event.key === '?' && this.hasControls) this.openHelp();
+    };
     /** Escape lets go of what is in hand, from every panel, and goes back to the picture. */
     private readonly escape = (event: KeyboardEvent): void => {
         if (event.key !== 'Escape' || event.defaultPrevented) return;
+        if (this.helpIsOpen) return this.closeHelp();
         this.model.letGo();
         this.model.canvas.focus({ preventScroll: true });
     };
@@ -248,9 +268,11 @@ export class App extends ModelElement {
         super.connectedCallback();
         this.model.profile.addEventListener('change', this.follow);
         this.addEventListener('keydown', this.escape);
+        this.model.canvas.addEventListener('keydown', this.ask);
         this.panelIsOpen = this.model.canvas.clientWidth > narrow;
     }
     override disconnectedCallback(): void {
+        this.model.canvas.removeEventListener('keydown', this.ask);
         this.model.profile.removeEventListener('change', this.follow);
         super.disconnectedCallback();
     }
@@ -259,6 +281,7 @@ export class App extends ModelElement {
         super();
         this.panelIsOpen = true;
         this.countersAreOpen = false;
+        this.helpIsOpen = false;
         this.isDropTarget = false;
         this.hasControls = true;
     }
@@ -289,7 +312,21 @@ export class App extends ModelElement {
                       <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
-            ${this.renderStatus()}`;
+            ${this.renderStatus()}
+            ${this.helpIsOpen
+                ? html`<div class="panel help" role="dialog" aria-label=${this.text('help')}>
+                      <stipple-help .model=${this.model} @close=${() => this.closeHelp()}></stipple-help>
+                  </div>`
+                : ''}`;
+    }
+
+    /** It is loaded when it is asked for first. */
+    private openHelp(): void {
+        void import('./help_panel.ts').then(() => (this.helpIsOpen = true));
+    }
+    private closeHelp(): void {
+        this.helpIsOpen = false;
+        this.renderRoot.querySelector<HTMLElement>('.ask')?.focus();
     }
 
     private renderNotices(): TemplateResult {
@@ -317,6 +354,14 @@ export class App extends ModelElement {
         return html`<section class="panel controls ${this.panelIsOpen ? '' : 'closed'}" aria-label=${this.text('page.controls')}>
             <header>
                 <h1>Stipple</h1>
+                <button
+                    class="quiet ask"
+                    aria-label=${this.text('help')}
+                    aria-haspopup="dialog"
+                    @click=${() => this.openHelp()}
+                >
+                    ?
+                </button>
                 <button
                     class="quiet"
                     aria-expanded=${this.panelIsOpen}
