@@ -18,6 +18,13 @@ bool isInPicture(const ViewTransform& view, Vec3d fromEye) {
            std::abs(dot(fromEye, view.up)) <= half;
 }
 
+// Of what lies there: 1 at the near plane.
+double partInSight(const ViewTransform& view, const BoxD& box) {
+    Vec3d middle = box.min + (box.max - box.min) * 0.5 - view.eye;
+    double nearest = length(middle) - length(box.max - box.min) * 0.5;
+    return std::sqrt(view.near / std::max(nearest, view.near));
+}
+
 } // namespace
 
 double loadValue(const ViewTransform& view, int height, const Hierarchy& hierarchy, std::size_t node,
@@ -43,7 +50,7 @@ double loadValue(const ViewTransform& view, int height, const Hierarchy& hierarc
         double depth = std::max(dot(middle, view.forward), view.near);
         area = areaAt(view.forward * depth) / 2;
     }
-    return area / cells * (to - from);
+    return area / cells * (to - from) * partInSight(view, box);
 }
 
 } // namespace stipple

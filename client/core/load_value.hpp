@@ -4,6 +4,10 @@
 // A node's points stand for areas as wide as the spacing of the first that is missing (rank_density.hpp), so
 // coarse nodes, and coarse strata of a node, are worth most. As in ExpectedPoints they are taken as spread
 // evenly over 27 cells of the node's box, and a cell whose middle is out of the picture adds nothing.
+//
+// What is near hides what is far; how much of it is not known, but of two nodes that add the same area the
+// nearer one shows more. So values fall with the square root of the distance (of exponents 0, 1/4, 1/2 and 1
+// that with the fewest bytes to 5 % error over a scan, a town and an interior: docs/MEASUREMENTS.md).
 #pragma once
 
 #include "client/core/frame_plan.hpp"

@@ -67,3 +67,18 @@ TEST_CASE("what is near and what is in view is worth more; what is hardly in vie
     CHECK(back > 0);
     CHECK(aside > 0);
 }
+
+TEST_CASE("of what takes as much of the picture the nearer is worth more, since it hides the other") {
+    Scene scene;
+    BoxD box = scene.cloud.metadata.worldBounds();
+    double size = length(box.max - box.min);
+    Camera camera;
+    camera.projection = Projection::orthographic;
+    camera.orthoHeight = 2 * size;
+    camera.target = box.min + (box.max - box.min) * 0.5;
+    camera.position = camera.target - Vec3d{0, size, 0};
+    ViewTransform view = scene.view(camera);
+    double front = scene.value(view, "2-0-0-0", 0, 100), back = scene.value(view, "2-0-3-0", 0, 100);
+    CHECK(front > 1.02 * back);
+    CHECK(front < 4 * back);
+}
