@@ -160,6 +160,15 @@ std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t 
     return nodes;
 }
 
+TestView octreeView(Projection projection) {
+    TestView view;
+    view.position = {1.2345, -17.7, 3.21};
+    view.target = {0.3, 0.1, -0.2};
+    view.projection = projection;
+    view.halfHeight = 7;
+    return view;
+}
+
 int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point) {
     int level = 0;
     auto inside = [](std::uint64_t at, std::uint64_t first, std::uint64_t side) {

@@ -26,15 +26,6 @@ Style adaptiveStyle() {
     return style;
 }
 
-TestView viewOf(Projection projection) {
-    TestView view;
-    view.position = {1.2345, -17.7, 3.21};
-    view.target = {0.3, 0.1, -0.2};
-    view.projection = projection;
-    view.halfHeight = 7;
-    return view;
-}
-
 // As drawn by the software renderer: 512 points at a time.
 std::vector<int> softwareLevels(const DrawnOctree& octree, std::size_t place, const DrawNode& node) {
     std::vector<int> levels;
@@ -87,7 +78,7 @@ TEST_CASE("the level of every point is that of the finest drawn node that holds 
     for (int rootBits : {12, 21, 26, 31}) {
         std::vector<TestNode> nodes =
             randomOctree(11, 4, 120, rootBits, {-5, -5, -5}, std::ldexp(10, -rootBits));
-        FramePlan plan = testPlan(nodes, viewOf(Projection::perspective), adaptiveStyle());
+        FramePlan plan = testPlan(nodes, octreeView(Projection::perspective), adaptiveStyle());
         checkLevels(nodes, plan, "a whole tree");
 
         // Nodes that are not drawn do not count, but what lies below them does.
@@ -95,7 +86,7 @@ TEST_CASE("the level of every point is that of the finest drawn node that holds 
         for (std::size_t i = 0; i < nodes.size(); ++i)
             if (i % 5 != 2)
                 some.push_back(nodes[i]);
-        plan = testPlan(some, viewOf(Projection::perspective), adaptiveStyle());
+        plan = testPlan(some, octreeView(Projection::perspective), adaptiveStyle());
         checkLevels(some, plan, "a tree with nodes missing");
     }
 }
@@ -127,7 +118,7 @@ TEST_CASE("adaptive pictures are the reference's, and the same in software and G
                 style.sizeSpacings = spacings;
                 style.edl.enabled = spacings == 0.4;
                 style.edl.strength = 0.004;
-                TestView view = viewOf(projection);
+                TestView view = octreeView(projection);
                 INFO("spacings " << spacings << (shape == PointShape::square ? " square" : " circle"));
                 FramePlan plan = testPlan(nodes, view, style);
                 Image picture = software->render(plan);
@@ -161,7 +152,7 @@ TEST_CASE("adaptive sizes work with continuous detail alike in software and GLES
     std::vector<TestNode> nodes = randomOctree(21, 3, 60, 12, {-5, -5, -5}, 10.0 / 4096);
     Style style = adaptiveStyle();
     style.detail.mode = DetailMode::continuous;
-    FramePlan plan = testPlan(nodes, viewOf(Projection::perspective), style);
+    FramePlan plan = testPlan(nodes, octreeView(Projection::perspective), style);
     plan.detailPixels = 8;
     Image picture = SoftwareRenderer::create(1)->render(plan);
     measure::PixelError apart = measure::pixelError(picture, glesPicture(*context, **gles, plan), 2);

@@ -23,17 +23,8 @@ Style adaptiveStyle() {
     return style;
 }
 
-TestView viewOf(Projection projection) {
-    TestView view;
-    view.position = {1.2345, -17.7, 3.21};
-    view.target = {0.3, 0.1, -0.2};
-    view.projection = projection;
-    view.halfHeight = 7;
-    return view;
-}
-
 FramePlan planOf(const std::vector<TestNode>& nodes, Projection projection = Projection::perspective) {
-    return testPlan(nodes, viewOf(projection), adaptiveStyle());
+    return testPlan(nodes, octreeView(projection), adaptiveStyle());
 }
 
 std::vector<TestNode> without(const std::vector<TestNode>& nodes, std::size_t which) {
@@ -113,7 +104,7 @@ TEST_CASE("what is left out as unseen shows nowhere") {
     Style style = adaptiveStyle();
     style.maxSizePixels = 1;
     for (Projection projection : {Projection::perspective, Projection::orthographic}) {
-        TestView view = viewOf(projection);
+        TestView view = octreeView(projection);
         view.position = {0.2, -4, 0.1};
         view.halfHeight = 1;
         FramePlan plan = testPlan(randomOctree(8, 3, 60, 12, {-5, -5, -5}, 10.0 / 4096), view, style);

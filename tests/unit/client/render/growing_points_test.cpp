@@ -20,15 +20,6 @@ struct Scene {
     FramePlan plan; // of those that are drawn; the others are awaited
 };
 
-TestView viewOf(Projection projection) {
-    TestView view;
-    view.position = {1.2345, -17.7, 3.21};
-    view.target = {0.3, 0.1, -0.2};
-    view.projection = projection;
-    view.halfHeight = 7;
-    return view;
-}
-
 // Of an octree the nodes that `isDrawn` says; the others are awaited.
 template <class IsDrawn>
 Scene sceneOf(std::uint32_t pointsPerNode, Projection projection, const Style& style,
@@ -41,7 +32,7 @@ Scene sceneOf(std::uint32_t pointsPerNode, Projection projection, const Style& s
             scene.drawn.push_back(scene.all[i]);
         else
             awaited.push_back({0, scene.all[i].key});
-    scene.plan = testPlan(scene.drawn, viewOf(projection), style);
+    scene.plan = testPlan(scene.drawn, octreeView(projection), style);
     for (AwaitedNode& one : awaited)
         one.cloud = scene.plan.nodes.front().cloud;
     scene.plan.awaited = awaited;
@@ -85,7 +76,7 @@ double exactPixels(const Scene& scene, const TestNode& node, const TestPoint& po
     const FramePlan& plan = scene.plan;
     int drawn = finestLevel(scene.drawn, node, point), deepest = finestLevel(scene.all, node, point);
     bool perspective = plan.view.projection == Projection::perspective;
-    double depth = dot(node.world(point) - viewOf(plan.view.projection).position, plan.view.forward);
+    double depth = dot(node.world(point) - octreeView(plan.view.projection).position, plan.view.forward);
     double half = perspective ? plan.view.tanHalfFovY * depth : plan.view.halfHeight;
     double apart =
         std::ldexp(node.spacing, node.key.level - drawn) * plan.style.sizeSpacings * plan.height / (2 * half);
