@@ -47,9 +47,8 @@ NodeColumns columnsOf(const TestNode& node) {
 } // namespace
 
 std::shared_ptr<const ResidentNode> residentNode(const TestNode& node) {
-    static std::uint64_t nextId = 1;
     auto resident = std::make_shared<ResidentNode>();
-    resident->id = nextId++;
+    resident->id = nextResidentNodeId();
     resident->nodeBits = node.nodeBits;
     resident->positionShift = std::max(0, node.nodeBits - positionWordBits);
     resident->pointCount = resident->totalPoints = static_cast<std::uint32_t>(node.points.size());
