@@ -3,12 +3,9 @@ import './annotation_panel.ts';
 import './clip_overlay.ts';
 import './clip_panel.ts';
 import './cloud_list.ts';
-import './counters_panel.ts';
 import './look_panel.ts';
 import './measure_overlay.ts';
 import './measure_panel.ts';
-import './point_panel.ts';
-import './profile_panel.ts';
 import './scene_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
@@ -252,9 +249,11 @@ export class App extends ModelElement {
         `,
     ];
 
+    /** Of the panels that are loaded later. */
+    private readonly loaded = new Set<string>();
     private readonly follow = (): void => this.requestUpdate();
     private readonly ask = (event: KeyboardEvent): void => {
-        if (event.key === '?' && this.hasControls) this.openHelp();
+        if (event.key === '?' && this.hasControls) this.helpIsOpen = true;
     };
     /** Escape lets go of what is in hand, from every panel, and goes back to the picture. */
     private readonly escape = (event: KeyboardEvent): void => {
@@ -297,32 +296,40 @@ export class App extends ModelElement {
 
     private renderPanels(): TemplateResult {
         return html`${this.renderControls()}
-            ${this.countersAreOpen
+            ${this.countersAreOpen && this.has('counters', () => import('./counters_panel.ts'))
                 ? html`<aside class="panel counters" tabindex="0" aria-label=${this.text('counters')}>
                       <stipple-counters .model=${this.model}></stipple-counters>
                   </aside>`
                 : ''}
-            ${this.model.picking.point
+            ${this.model.picking.point && this.has('point', () => import('./point_panel.ts'))
                 ? html`<aside class="panel point" aria-label=${this.text('point')} aria-live="polite">
                       <stipple-point .model=${this.model}></stipple-point>
                   </aside>`
                 : ''}
-            ${this.model.profile.isOpen
+            ${this.model.profile.isOpen && this.has('profile', () => import('./profile_panel.ts'))
                 ? html`<aside class="panel profile" aria-label=${this.text('profile')}>
                       <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
             ${this.renderStatus()}
-            ${this.helpIsOpen
+            ${this.helpIsOpen && this.has('help', () => import('./help_panel.ts'))
                 ? html`<div class="panel help" role="dialog" aria-label=${this.text('help')}>
                       <stipple-help .model=${this.model} @close=${() => this.closeHelp()}></stipple-help>
                   </div>`
                 : ''}`;
     }
 
-    /** It is loaded when it is asked for first. */
-    private openHelp(): void {
-        void import('./help_panel.ts').then(() => (this.helpIsOpen = true));
+    /** Whether a panel is here: panels that few want at first are loaded when they are asked for. */
+    private has(panel: string, load: () => Promise<unknown>): boolean {
+        if (!this.loaded.has(panel))
+            load().then(
+                () => {
+                    this.loaded.add(panel);
+                    this.requestUpdate();
+                },
+                (error: unknown) => this.model.tell(error),
+            );
+        return this.loaded.has(panel);
     }
     private closeHelp(): void {
         this.helpIsOpen = false;
@@ -358,7 +365,7 @@ export class App extends ModelElement {
                     class="quiet ask"
                     aria-label=${this.text('help')}
                     aria-haspopup="dialog"
-                    @click=${() => this.openHelp()}
+                    @click=${() => (this.helpIsOpen = true)}
                 >
                     ?
                 </button>
