@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, settle } from './support/browser.mjs';
+import { keepScreenshot, openPage, settle } from './support/browser.mjs';
 import { focused, tabTo } from './support/keyboard.mjs';
 import { openTownPage } from './support/town_page.mjs';
 
@@ -155,6 +155,50 @@ describe('from right to left', () => {
     });
 });
 
+/** What of the controls is cut off: beyond the page's edges, or a text wider than its button. */
+function cutOff() {
+    const wrong = [], width = innerWidth;
+    const walk = (root) => {
+        for (const element of root.querySelectorAll('*')) {
+            if (element.shadowRoot) walk(element.shadowRoot);
+            if (!element.matches('button, select, input, textarea, a, .choice span, legend, .row > span')) continue;
+            const box = element.getBoundingClientRect();
+            if (box.width === 0 || element.matches('.unseen, .unseen *, .label')) continue;
+            const name = element.getAttribute('aria-label') ?? element.textContent.trim();
+            if (box.left < 0 || box.right > width) wrong.push(`${name} is cut off: ${box.left} to ${box.right}`);
+            if (element.scrollWidth > element.clientWidth + 1 && !element.matches('input, textarea, select, a, span'))
+                wrong.push(`${name} is wider than its place: ${element.scrollWidth} in ${element.clientWidth}`);
+            if (element.matches('.choice span') && element.scrollWidth > element.clientWidth + 1)
+                wrong.push(`${name} is wider than its place: ${element.scrollWidth} in ${element.clientWidth}`);
+            // WCAG 2.2, 2.5.8: 24 pixels; links in a line of text are exempt, and what has so much room around it.
+            const target = element.closest('label') ?? element;
+            if (element.matches('button, select, input:not([type=checkbox])') && target.getBoundingClientRect().height < 24)
+                wrong.push(`${name} is ${box.height} high`);
+        }
+    };
+    walk(document);
+    return wrong;
+}
+
+describe('in other languages', () => {
+    for (const language of ['de', 'fr', 'ja'])
+        test(`${language}: the page says so, and its texts have room`, async () => {
+            const { page: other, complaints } = await openPage(town.browser, { width: 1100, height: 900 });
+            await other.goto(`${town.address}?lang=${language}`);
+            await settle(other);
+            assert.equal(await other.evaluate(() => document.documentElement.lang), language);
+            await other.evaluate(() => window.stipple.setStyle({ detail: { mode: 'continuous' }, colourMode: 'intensity' }));
+            await settle(other);
+            assert.deepEqual(await other.evaluate(cutOff), []);
+            await keepScreenshot(other, `language_${language}`);
+            await other.setViewportSize({ width: 360, height: 640 });
+            await settle(other);
+            assert.deepEqual(await other.evaluate(cutOff), []);
+            assert.deepEqual(complaints, []);
+            await other.close();
+        });
+});
+
 describe('on a telephone', () => {
     test('360 pixels are enough: a sheet at the foot, nothing cut off, targets for fingers, nothing serious for axe-core', async () => {
         await page.setViewportSize({ width: 360, height: 640 });
@@ -162,25 +206,7 @@ describe('on a telephone', () => {
         const controls = page.getByRole('region', { name: 'Controls' });
         const box = await controls.boundingBox();
         assert.ok(box.x >= 0 && box.x + box.width <= 360 && box.y + box.height <= 640 && box.height <= 400, JSON.stringify(box));
-        const cut = await page.evaluate(() => {
-            const wrong = [];
-            const walk = (root) => {
-                for (const element of root.querySelectorAll('*')) {
-                    if (element.shadowRoot) walk(element.shadowRoot);
-                    if (!element.matches('button, select, input, textarea, a')) continue;
-                    const { left, right, width, height } = element.getBoundingClientRect();
-                    if (width === 0) continue;
-                    const name = element.getAttribute('aria-label') ?? element.textContent.trim();
-                    if (left < 0 || right > 360) wrong.push(`${name} is cut off: ${left} to ${right}`);
-                    // WCAG 2.2, 2.5.8: 24 pixels; links in a line of text are exempt, and what has so much room around it.
-                    const target = element.closest('label') ?? element;
-                    if (!element.matches('a, [type=checkbox]') && target.getBoundingClientRect().height < 24) wrong.push(`${name} is ${height} high`);
-                }
-            };
-            walk(document);
-            return wrong;
-        });
-        assert.deepEqual(cut, []);
+        assert.deepEqual(await page.evaluate(cutOff), []);
         await checkAxe('telephone');
         for (const name of ['Close the point', 'Close the profile']) await page.getByRole('button', { name }).click();
         await page.getByRole('button', { name: 'Counters' }).click();

@@ -551,7 +551,7 @@ describe('what goes wrong is said in words', () => {
                     };
                 }),
         });
-        assert.match(text, /gives the page no WebGL2/);
+        assert.match(text, /gives the page no WebGL2.*newer browser/);
     });
 
     test('a file that is replaced while it is looked at', async () => {

@@ -9,6 +9,7 @@ import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
 import { Scenes } from './scene/scenes.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
+import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
 import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
@@ -82,7 +83,9 @@ export class Model extends EventTarget {
 
     static async create(canvas: HTMLCanvasElement, texts: Texts, server?: URL): Promise<Model> {
         let model: Model | undefined;
-        const viewer = await Viewer.create(canvas, () => model?.wake());
+        const viewer = await Viewer.create(canvas, () => model?.wake()).catch((error: unknown) => {
+            throw canvas.getContext('webgl2') ? error : new Problem('page.noWebgl');
+        });
         return (model = new Model(canvas, viewer, texts, server));
     }
 

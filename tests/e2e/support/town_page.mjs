@@ -2,7 +2,7 @@
 import { launch, openPage, settle, settleWithPoints } from './browser.mjs';
 import { makeTown, scratchFolder, serve } from './program.mjs';
 
-/** {page, complaints, folder (of the clouds), close()}. */
+/** {page, complaints, folder (of the clouds), address, browser, close()}. */
 export async function openTownPage(size) {
     const folder = await scratchFolder();
     const server = await serve(await makeTown(folder.path));
@@ -17,7 +17,7 @@ export async function openTownPage(size) {
     await settleWithPoints(page);
     await page.evaluate(() => window.stipple.setStyle({ sizePixels: 4, shape: 'square' }));
     await settle(page);
-    return { page, complaints, folder: folder.path, close };
+    return { page, complaints, folder: folder.path, address: server.address, browser, close };
 }
 
 // Arithmetic of vectors, as the tests need it to check what the page says.

@@ -8,6 +8,8 @@ export const english = {
         'Point cloud. Arrow keys turn, shift and arrow keys move, plus and minus zoom, the space bar clicks in the middle, 1, 2, 3 and 4 show top, front, iso and side, F shows all, U goes back.',
     'page.cannotStart': "Stipple can't start: {reason}",
     'page.badBudget': 'The attribute budget is not a number of points: {value}',
+    'page.noWebgl':
+        'This browser gives the page no WebGL2. Turn on hardware acceleration in its settings, or use a newer browser.',
     'page.contextLost': 'The browser has taken the graphics away. The picture comes back as soon as it gives them back; if it does not, load the page anew.',
     'page.controls': 'Controls',
     'page.hide': 'Hide',

@@ -5,6 +5,8 @@ export const french = translation({
         'Nuage de points. Les flèches tournent, maj et les flèches déplacent, plus et moins zooment, la barre d’espace clique au milieu, 1, 2, 3 et 4 montrent les vues de dessus, de face, isométrique et de côté, F montre tout, U revient en arrière.',
     'page.cannotStart': 'Stipple ne peut pas démarrer : {reason}',
     'page.badBudget': 'L’attribut budget n’est pas un nombre de points : {value}',
+    'page.noWebgl':
+        'Ce navigateur ne donne pas WebGL2 à la page. Activez l’accélération matérielle dans ses réglages ou utilisez un navigateur plus récent.',
     'page.contextLost':
         'Le navigateur a retiré l’affichage graphique. L’image revient dès qu’il le rend ; sinon, rechargez la page.',
     'page.controls': 'Réglages',

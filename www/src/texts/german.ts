@@ -5,6 +5,8 @@ export const german = translation({
         'Punktwolke. Pfeiltasten drehen, Umschalt und Pfeiltasten verschieben, Plus und Minus zoomen, die Leertaste klickt in die Mitte, 1, 2, 3 und 4 zeigen Draufsicht, Vorderansicht, Schrägansicht und Seitenansicht, F zeigt alles, U geht zurück.',
     'page.cannotStart': 'Stipple kann nicht starten: {reason}',
     'page.badBudget': 'Das Attribut budget ist keine Anzahl von Punkten: {value}',
+    'page.noWebgl':
+        'Dieser Browser gibt der Seite kein WebGL2. Schalten Sie in seinen Einstellungen die Hardwarebeschleunigung ein, oder verwenden Sie einen neueren Browser.',
     'page.contextLost':
         'Der Browser hat die Grafik entzogen. Das Bild kommt zurück, sobald er sie wieder freigibt; geschieht das nicht, laden Sie die Seite neu.',
     'page.controls': 'Bedienung',

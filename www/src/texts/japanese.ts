@@ -5,6 +5,8 @@ export const japanese = translation({
         '点群。矢印キーで回転、Shift と矢印キーで移動、プラスとマイナスで拡大縮小、スペースキーで中央をクリック、1、2、3、4 で上面、正面、等角、側面を表示、F で全体を表示、U で前の視点に戻ります。',
     'page.cannotStart': 'Stipple を開始できません: {reason}',
     'page.badBudget': '属性 budget が点の数ではありません: {value}',
+    'page.noWebgl':
+        'このブラウザーでは WebGL2 を使えません。設定でハードウェアアクセラレーションを有効にするか、新しいブラウザーを使ってください。',
     'page.contextLost':
         'ブラウザーがグラフィックスを中断しました。再開されると表示が戻ります。戻らない場合はページを再読み込みしてください。',
     'page.controls': '設定',
