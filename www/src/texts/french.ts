@@ -168,7 +168,7 @@ export const french = translation({
     'view.backHint': 'Là où la caméra était avant (U)',
     'view.forth': 'Avance',
     'view.forthHint': 'De nouveau en avant (maj U)',
-    'view.move': 'Déplacement',
+    'view.move': 'Mouvement',
     'view.orbit': 'Orbite',
     'view.earth': 'Terre',
     'view.fly': 'Vol',

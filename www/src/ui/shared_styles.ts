@@ -47,9 +47,12 @@ export const controlStyles = css`
         min-height: 2rem;
         margin-top: 0.35rem;
     }
+    .row > span:first-child {
+        overflow-wrap: anywhere;
+    }
     .value {
         display: grid;
-        grid-template-columns: 1fr 3.6rem;
+        grid-template-columns: 1fr minmax(3.6rem, auto);
         align-items: center;
         gap: 0.5rem;
     }
@@ -109,13 +112,14 @@ export const controlStyles = css`
     }
     .choice {
         display: flex;
+        flex-wrap: wrap;
         background: var(--raised);
         border: 1px solid var(--line);
         border-radius: 6px;
         overflow: hidden;
     }
     .choice label {
-        flex: 1;
+        flex: 1 0 auto;
         position: relative;
     }
     .choice input {
