@@ -1,6 +1,7 @@
 #include "client/core/cloud_loader.hpp"
 
 #include "shared/base/text.hpp"
+#include "shared/format/cloud_file.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -176,6 +177,35 @@ void CloudLoader::addBlockItems(std::uint32_t node, const CachedNode* cached,
     for (int block : needs.blocks)
         if (auto item = blockItem(node, block, cached))
             items.push_back(std::move(*item));
+}
+
+void CloudLoader::addWatchedItems(std::uint32_t node, const CachedNode* cached,
+                                  std::vector<LoadItem>& items) const {
+    if (residency[node].failed || !cached || !cached->node)
+        return;
+    for (int block : watched.blocks)
+        if (auto item = blockItem(node, block, cached))
+            items.push_back(std::move(*item));
+    // Exact colours are coded against the whole node's picture.
+    if (watched.exactBlock >= 0 && lacksExact(node, *cached) &&
+        cached->node->pointCount == cached->node->totalPoints)
+        if (auto item = blockItem(node, watched.exactBlock, cached))
+            items.push_back(std::move(*item));
+}
+
+bool CloudLoader::lacksExact(std::uint32_t node, const CachedNode& cached) const {
+    std::vector<AttributeBlock> blocks = attributeBlocks(*opened.metadata);
+    for (std::size_t b = 0; b < blocks.size(); ++b)
+        if (blocks[b].isExactColour && hierarchy.node(node).entry.attributeBytes[b] > 0)
+            return !cached.hasBlock(static_cast<int>(b));
+    return false;
+}
+
+bool CloudLoader::hasWatched(std::uint32_t node, const CachedNode& cached) const {
+    bool mayBeExact = watched.exactBlock >= 0 && cached.node->pointCount == cached.node->totalPoints;
+    return std::all_of(watched.blocks.begin(), watched.blocks.end(),
+                       [&](int block) { return cached.hasBlock(block); }) &&
+           !(mayBeExact && lacksExact(node, cached));
 }
 
 std::optional<LoadItem> CloudLoader::blockItem(std::uint32_t node, int block,

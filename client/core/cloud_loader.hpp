@@ -35,7 +35,8 @@ struct CloudLoader {
     std::set<std::uint32_t> damagedChunks;                 // by node above; fetched once more
     std::vector<std::uint32_t> lostNodes, lostChunks;      // given up, but another time they may come
     AttributeNeeds needs;                                  // of the style
-    const KeptBytes* kept = nullptr;                       // of the session
+    AttributeNeeds watched;          // of whoever counts what is in view; nodes are drawn without them
+    const KeptBytes* kept = nullptr; // of the session
     std::optional<std::chrono::steady_clock::time_point> reloadedAt; // its file was replaced
 
     bool ready() const { return state.stage == CloudStage::ready; }
@@ -66,8 +67,14 @@ struct CloudLoader {
     std::optional<LoadItem> pictureItem(std::uint32_t node, int strata, const CachedNode* cached) const;
     // All bytes of a node, whatever is here of it already (LoadKind::points).
     LoadItem pointsItem(std::uint32_t node) const;
-    // The further blocks that the style needs, or one of them.
+    // The further blocks that the style needs, those that are watched, or one of them.
     void addBlockItems(std::uint32_t node, const CachedNode* cached, std::vector<LoadItem>& items) const;
+    void addWatchedItems(std::uint32_t node, const CachedNode* cached, std::vector<LoadItem>& items) const;
+    // Whether a node that can be drawn has its exact colours in a block that is not here, or still on its
+    // way.
+    bool lacksExact(std::uint32_t node, const CachedNode& cached) const;
+    // What is watched of a node that can be drawn is here.
+    bool hasWatched(std::uint32_t node, const CachedNode& cached) const;
     std::optional<LoadItem> blockItem(std::uint32_t node, int block, const CachedNode* cached) const;
 
   private:

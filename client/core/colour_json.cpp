@@ -160,8 +160,12 @@ void readList(FieldReader& fields, const char* name, std::size_t most, ColourSty
 
 } // namespace
 
+void readColourMode(FieldReader& fields, ColourMode& mode) {
+    fields.choice("colourMode", mode, colourModes);
+}
+
 void readColours(FieldReader& fields, ColourStyle& style) {
-    fields.choice("colourMode", style.colourMode, colourModes);
+    readColourMode(fields, style.colourMode);
     fields.choice("gradient", style.gradient, gradients);
     fields.range("intensityRange", style.intensityRange);
     fields.range("elevationRange", style.elevationRange);

@@ -21,6 +21,8 @@ namespace stipple {
 
 void readColours(json_fields::FieldReader& fields, ColourStyle& style);
 nlohmann::json coloursJson(const ColourStyle& style);
+// The field "colourMode" alone.
+void readColourMode(json_fields::FieldReader& fields, ColourMode& mode);
 
 // In the order of the enumeration: what `colourMode` may be.
 std::vector<std::string> colourModeNames();

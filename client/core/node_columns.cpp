@@ -67,6 +67,11 @@ int findAttribute(const Schema& schema, std::string_view name) {
     return -1;
 }
 
+bool isWhole(const Attribute& attribute) {
+    return attribute.type != AttributeType::f32 && attribute.type != AttributeType::f64 &&
+           attribute.scale == std::floor(attribute.scale) && attribute.offset == std::floor(attribute.offset);
+}
+
 std::vector<double> meaningsOf(const Attribute& attribute, ByteSpan column, std::size_t count) {
     std::vector<double> values(count);
     readValues(attribute.type, column, attribute.size(), values);

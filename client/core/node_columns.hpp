@@ -38,6 +38,9 @@ struct NodeColumns {
 // Index of an attribute by name, upper or lower case; -1 if the schema has none.
 int findAttribute(const Schema& schema, std::string_view name);
 
+// All that the attribute can mean are whole numbers.
+bool isWhole(const Attribute& attribute);
+
 // What the first `count` values of a column mean: offset + scale × stored, of several components the first;
 // NaN for "no value". The column holds that many. Integers beyond 2^53 are rounded.
 std::vector<double> meaningsOf(const Attribute& attribute, ByteSpan column, std::size_t count);

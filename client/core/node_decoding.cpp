@@ -43,7 +43,7 @@ void NodeDecoding::takeBlock(CloudLoader& cloud, std::uint32_t node, int block, 
     job.strata = 0;
     job.block = block;
     job.attributes = std::move(bytes);
-    if (block == cloud.needs.exactBlock) {
+    if (block == cloud.needs.exactBlock || block == cloud.watched.exactBlock) {
         if (!cached.node || cached.node->pointCount < cached.node->totalPoints)
             return; // what they are coded against was dropped in between
         job.shown = shownColours(*cached.node);

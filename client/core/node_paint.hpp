@@ -59,12 +59,15 @@ class Painter {
     // Null: the node is drawn as it is, in its colour words or, without any, plain.
     std::shared_ptr<const NodePaint> paint(const PaintedNode& node) const;
 
+    // What an attribute of the schema (its index) means of each point: as colours and filters take it. Empty:
+    // the node has no such values, or `attribute` is -1.
+    std::vector<double> attributeValues(const PaintedNode& node, int attribute) const;
+
   private:
     using Words = std::vector<std::uint32_t>;
     // Distances of values from the start of a range; NaN: no value. Empty: there are no such values.
     std::vector<double> values(const PaintedNode& node, ColourMode mode, const std::string& attribute,
                                double from) const;
-    std::vector<double> attributeValues(const PaintedNode& node, int attribute) const;
     std::vector<double> elevations(const PaintedNode& node, double from) const;
     std::vector<double> levels(const PaintedNode& node) const;
     Words ownWords(const PaintedNode& node) const;

@@ -10,6 +10,7 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -126,6 +127,38 @@ class Session final : public ViewSession {
         return now;
     }
 
+    void watchAttributes(std::vector<std::string> names) override {
+        if (names == watched_)
+            return;
+        watched_ = std::move(names);
+        updateWatched();
+        dirty_ = true;
+    }
+
+    CountedView countedView() override {
+        CountedView counted;
+        counted.view = view_;
+        counted.width = width_;
+        counted.height = height_;
+        counted.style = style_;
+        counted.clips = clips_;
+        for (const SelectedNode& selected : selection_.nodes) {
+            const CachedNode* cached = loading_.cache().find(cacheKey(selected));
+            if (selected.drawPoints == 0 || !cached || !cached->node)
+                continue;
+            const CloudLoader& cloud = loading_.clouds().at(selectionIds_[selected.cloud]);
+            const HierarchyNode& known = cloud.hierarchy.node(selected.node);
+            const auto& metadata = cloud.opened.metadata;
+            bool isMean =
+                metadata->innerColour == InnerColour::mean && cloud.lacksExact(selected.node, *cached);
+            counted.nodes.push_back(
+                {cached->node, cached->columns(), std::min(selected.drawPoints, cached->node->pointCount),
+                 cloud.hasWatched(selected.node, *cached), isMean,
+                 metadata->rootCube.nodeMin(known.entry.key), known.geometry.box, metadata});
+        }
+        return counted;
+    }
+
     Status askPoint(const PointIdentity& point) override {
         auto cloud = loading_.clouds().find(point.cloud);
         if (cloud == loading_.clouds().end())
@@ -168,6 +201,7 @@ class Session final : public ViewSession {
         dirty_ = false;
         ++frame_;
         updateNeeds();
+        updateWatched();
         view_ = viewTransform(camera_, width_, height_, contentBounds());
 
         std::vector<SelectionCloud> inputs;
@@ -235,6 +269,15 @@ class Session final : public ViewSession {
         }
     }
 
+    void updateWatched() {
+        ColourStyle looking; // that needs these attributes and nothing else
+        looking.colourMode = ColourMode::elevation;
+        for (const std::string& name : watched_)
+            looking.filters.push_back({name, -HUGE_VAL, HUGE_VAL});
+        for (auto& [id, cloud] : loading_.clouds())
+            cloud.watched = cloud.ready() ? needsOf(looking, *cloud.opened.metadata) : AttributeNeeds();
+    }
+
     std::uint32_t bytesPerPoint(const CloudLoader& cloud) const {
         const CloudMetadata& metadata = *cloud.opened.metadata;
         bool wide = metadata.rootCube.bits > positionWordBits;
@@ -251,11 +294,14 @@ class Session final : public ViewSession {
             auto cloud = loading_.clouds().find(key.cloud);
             if (cloud == loading_.clouds().end())
                 return false;
-            const AttributeNeeds& needs = cloud->second.needs;
+            const AttributeNeeds &needs = cloud->second.needs, &watched = cloud->second.watched;
+            auto isNeeded = [](const AttributeNeeds& by, int block) {
+                return block == by.exactBlock ||
+                       std::find(by.blocks.begin(), by.blocks.end(), block) != by.blocks.end();
+            };
             bool packed = !drawsDiscs() && std::exchange(cached.normals, nullptr) != nullptr;
             auto dropped = std::erase_if(cached.blocks, [&](const CachedBlock& one) {
-                return !one.decoding && one.block != needs.exactBlock &&
-                       std::find(needs.blocks.begin(), needs.blocks.end(), one.block) == needs.blocks.end();
+                return !one.decoding && !isNeeded(needs, one.block) && !isNeeded(watched, one.block);
             });
             counters_.columnsDropped += dropped;
             return dropped > 0 || packed;
@@ -365,6 +411,11 @@ class Session final : public ViewSession {
                 item && !cloud.residency[node].failed)
                 items.push_back(std::move(*item));
         }
+        if (!watched_.empty())
+            for (const SelectedNode& selected : selection_.nodes)
+                loading_.clouds()
+                    .at(selectionIds_[selected.cloud])
+                    .addWatchedItems(selected.node, loading_.cache().find(cacheKey(selected)), items);
         loading_.want(std::move(items));
     }
 
@@ -472,7 +523,8 @@ class Session final : public ViewSession {
     SessionCounters counters_;
     SessionLoading loading_;
     PlanPainter painter_;
-    ClipBoxes clips_; // of style_
+    ClipBoxes clips_;                  // of style_
+    std::vector<std::string> watched_; // attributes
 
     bool dirty_ = true;      // a selection could come out differently
     bool planDirty_ = false; // the style changed in what shows only

@@ -13,6 +13,7 @@
 #include "client/core/priority_weights.hpp"
 #include "client/core/skips.hpp"
 #include "client/core/style.hpp"
+#include "client/core/view_counter.hpp"
 #include "shared/io/byte_source.hpp"
 
 #include <chrono>
@@ -96,6 +97,13 @@ class ViewSession {
     // that is interrupted, nothing is on its way.
     virtual bool settled() const = 0;
     virtual SessionCounters counters() const = 0;
+
+    // From now on the values of these attributes are fetched of what is drawn, after all that the picture
+    // wants and without holding it up, and kept; none: no more. Names that a cloud lacks are passed over.
+    virtual void watchAttributes(std::vector<std::string> names) = 0;
+    // What the present plan shows, to be counted (view_counter.hpp), and points that filters or hidden
+    // classes hide; nothing of clouds of which they hide all.
+    virtual CountedView countedView() = 0;
 
     // Asks for everything the file says of a point: reads its node, whatever is here of it. The answer comes
     // with takePointAnswers(), after updates. Errors: invalidArgument for a point that is not there.

@@ -2,6 +2,8 @@
 
 #include "client/core/attribute_needs.hpp"
 #include "client/core/camera.hpp"
+#include "client/core/cloud_facts.hpp"
+#include "client/core/gradients.hpp"
 #include "client/core/json.hpp"
 #include "client/core/point_query.hpp"
 #include "client/survey/measure_json.hpp"
@@ -64,6 +66,13 @@ std::string Viewer::cloudsJson() const {
     for (const CloudState& cloud : session_->clouds())
         list.push_back(toJson(cloud));
     return jsonText(list);
+}
+
+std::string Viewer::cloudFactsJson(CloudId id) const {
+    for (const CloudState& cloud : session_->clouds())
+        if (cloud.id == id && cloud.metadata)
+            return jsonText(stipple::cloudFactsJson(*cloud.metadata));
+    return jsonText(nullptr);
 }
 
 void Viewer::resize(int width, int height) {
@@ -220,7 +229,7 @@ void addPlace(nlohmann::json& point, const CloudState& cloud, const PointIdentit
     point["epsg"] = crs.epsg ? nlohmann::json(*crs.epsg) : nlohmann::json(nullptr);
     point["unit"] = crs.unit;
     point["unitMeters"] = crs.unitMeters;
-    point["geocentric"] = !crs.axes.empty() && crs.axes[0].direction.rfind("geocentric", 0) == 0;
+    point["geocentric"] = isGeocentric(crs);
     point["scale"] = list(metadata.grid.scale);
     point["offset"] = list(metadata.grid.offset);
     point["spacing"] = std::ldexp(metadata.spacing, -identity.node.level);
@@ -284,6 +293,53 @@ std::string Viewer::takePickJson() {
             return jsonText({{"pending", false}, {"point", pickedJson(hit, *answer.record)}});
         }
     return jsonText({{"pending", true}});
+}
+
+// --- counting ------------------------------------------------------------------------------------------
+
+namespace {
+// A few milliseconds.
+constexpr std::uint64_t pointsCountedAtOnce = 100'000;
+constexpr int shownGradientStops = 64;
+} // namespace
+
+Status Viewer::count(std::string_view json) {
+    STIPPLE_TRY(requests, histogramRequestsFromJson(json));
+    session_->watchAttributes(attributesOf(requests));
+    counter_.reset();
+    if (!requests.empty())
+        counter_.emplace(session_->countedView(), std::move(requests));
+    return {};
+}
+
+std::string Viewer::takeCountsJson() {
+    if (!counter_)
+        return jsonText({{"pending", false}});
+    if (!counter_->advance(pointsCountedAtOnce))
+        return jsonText({{"pending", true}});
+    nlohmann::json counts = toJson(counter_->counts());
+    counter_.reset();
+    return jsonText({{"pending", false}, {"counts", std::move(counts)}});
+}
+
+std::string Viewer::jsonOf(const Style& style) {
+    return jsonText(toJson(style));
+}
+
+std::string Viewer::gradientsJson() {
+    nlohmann::json gradients = nlohmann::json::object();
+    for (GradientName name : {GradientName::viridis, GradientName::turbo, GradientName::inferno,
+                              GradientName::spectral, GradientName::grey, GradientName::terrain}) {
+        nlohmann::json colours = nlohmann::json::array();
+        for (int i = 0; i < shownGradientStops; ++i) {
+            auto entry = static_cast<std::size_t>(i * (gradientEntries - 1) / (shownGradientStops - 1));
+            std::uint32_t word = gradientTable(name)[entry];
+            colours.push_back({word & 255, word >> 8 & 255, word >> 16 & 255});
+        }
+        gradients[gradientNameText(name)] = {{"colours", std::move(colours)},
+                                             {"isColourBlindSafe", isColourBlindSafe(name)}};
+    }
+    return jsonText(gradients);
 }
 
 std::string Viewer::measureJson(std::string_view request) {

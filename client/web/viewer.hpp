@@ -27,6 +27,8 @@ class Viewer {
     void setVisible(CloudId id, bool visible);
     // An array of clouds as in client/core/json.hpp.
     std::string cloudsJson() const;
+    // client/core/cloud_facts.hpp; null unless the cloud is ready.
+    std::string cloudFactsJson(CloudId id) const;
 
     void resize(int width, int height); // pixels of the canvas
     Status setCamera(std::string_view json);
@@ -73,6 +75,17 @@ class Viewer {
     // "place": [x, y, z] or null}.
     std::string takePlaceJson();
 
+    // Asks how often values occur in the present picture: histograms of client/core/view_counter.hpp. What
+    // they look at is fetched from then on, until another list is asked for ("[]": nothing).
+    Status count(std::string_view json);
+    // Counts for a while. {"pending": true}, {"pending": false} if nothing was asked, else once "counts" with
+    // what was counted.
+    std::string takeCountsJson();
+    // The style as it is drawn, with ranges where it leaves them to the clouds.
+    std::string drawnStyleJson() const { return jsonOf(drawn_.style); }
+    // {"viridis": {"colours": [[r, g, b], …], "isColourBlindSafe": true}, …}, from low values to high.
+    static std::string gradientsJson();
+
     // {"answer": {…}} or {"error": sentence}, of client/survey/measure_json.hpp.
     static std::string measureJson(std::string_view request);
     // Where world positions [[x, y, z], …] are in the present picture: [x, y, view distance] each, in pixels
@@ -106,6 +119,7 @@ class Viewer {
     // being what is null then.
     std::variant<PickHit, std::string> takeHit(const char* name);
     nlohmann::json pickedJson(const PickHit& hit, const PointRecord& record) const;
+    static std::string jsonOf(const Style& style);
     double aspect() const { return static_cast<double>(width_) / height_; }
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
     bool pendingViewIsDue() const { return pendingView_ && !session_->contentBounds().empty(); }
@@ -121,6 +135,7 @@ class Viewer {
     bool drawAgain_ = false;
     std::optional<Error> drawError_;
     std::optional<PickHit> picked_; // whose values are on their way
+    std::optional<ViewCounter> counter_;
     std::optional<Flight> flight_;
     Camera flown_; // where the flight had come to
 };

@@ -53,6 +53,9 @@ EMSCRIPTEN_KEEPALIVE void stipple_set_visible(std::uint32_t id, int visible) {
 EMSCRIPTEN_KEEPALIVE const char* stipple_clouds() {
     return give(viewer->cloudsJson());
 }
+EMSCRIPTEN_KEEPALIVE const char* stipple_cloud_facts(std::uint32_t id) {
+    return give(viewer->cloudFactsJson(id));
+}
 
 // Camera, style, limits.
 EMSCRIPTEN_KEEPALIVE void stipple_resize(int width, int height) {
@@ -132,6 +135,20 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_take_pick() {
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_take_place() {
     return give(viewer->takePlaceJson());
+}
+
+// How often values occur in the picture.
+EMSCRIPTEN_KEEPALIVE const char* stipple_count(const char* json) {
+    return give(viewer->count(json));
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_take_counts() {
+    return give(viewer->takeCountsJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_drawn_style() {
+    return give(viewer->drawnStyleJson());
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_gradients() {
+    return give(Viewer::gradientsJson());
 }
 
 // Measuring.

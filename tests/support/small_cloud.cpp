@@ -38,6 +38,8 @@ CloudMetadata metadataOf(const SmallCloudOptions& options) {
     if (options.colour == PictureColour::rgb)
         for (std::string_view name : {attribute_names::red, attribute_names::green, attribute_names::blue})
             add(name);
+    if (options.withClasses)
+        add(attribute_names::classification, AttributeType::u8);
     if (options.withNormals)
         for (std::string_view name : {"nx", "ny", "nz"})
             add(name, AttributeType::i16);

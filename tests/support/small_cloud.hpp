@@ -20,6 +20,7 @@ struct SmallCloudOptions {
     InnerColour innerColour = InnerColour::exact;
     bool withIntensity = true;
     bool withNormals = false; // nx, ny, nz, int16
+    bool withClasses = false; // Classification, of 0 to 255
     std::uint32_t seed = 1;
 };
 

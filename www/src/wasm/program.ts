@@ -27,6 +27,7 @@ export interface ViewerProgram extends Program {
     _stipple_remove_cloud(id: number): void;
     _stipple_set_visible(id: number, visible: number): void;
     _stipple_clouds(): Address;
+    _stipple_cloud_facts(id: number): Address;
     _stipple_resize(width: number, height: number): void;
     _stipple_set_camera(json: Address): Address;
     _stipple_set_style(json: Address): Address;
@@ -52,6 +53,10 @@ export interface ViewerProgram extends Program {
     _stipple_pick(x: number, y: number, radius: number): Address;
     _stipple_take_pick(): Address;
     _stipple_take_place(): Address;
+    _stipple_count(json: Address): Address;
+    _stipple_take_counts(): Address;
+    _stipple_drawn_style(): Address;
+    _stipple_gradients(): Address;
     _stipple_measure(json: Address): Address;
     _stipple_project(json: Address): Address;
     _stipple_frame(): number;

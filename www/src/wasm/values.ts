@@ -124,6 +124,64 @@ export interface CloudState {
     hasNormals?: boolean;
 }
 
+/** client/core/cloud_facts.hpp. */
+export interface CloudFacts {
+    crs: CrsFacts;
+    attributes: AttributeFacts[];
+}
+export interface CrsFacts {
+    name: string;
+    epsg: number | null;
+    wkt: string;
+    proj: string;
+    unit: string;
+    unitMeters: number;
+    vertical: string;
+    geocentric: boolean;
+}
+export interface AttributeFacts {
+    name: string;
+    type: string;
+    components: number;
+    unit: string;
+    description: string;
+    isWhole: boolean;
+    min: number | null;
+    max: number | null;
+    mean: number | null;
+    deviation: number | null;
+}
+
+/** client/core/gradients.hpp: colours from low values to high. */
+export type Gradients = Record<Style['gradient'], { colours: Vector[]; isColourBlindSafe: boolean }>;
+
+/** client/core/view_counter.hpp. */
+export interface HistogramRequest {
+    colourMode: ColourMode;
+    attribute?: string;
+    bins?: number;
+    range?: [number, number] | null;
+}
+export interface Histogram {
+    range: [number, number] | null;
+    bins: number[];
+    below: number;
+    above: number;
+    points: number;
+    without: number;
+    coarse: number;
+    min: number;
+    max: number;
+    mean: number;
+    deviation: number;
+}
+export interface ViewCounts {
+    points: number;
+    nodes: number;
+    nodesMissing: number;
+    histograms: Histogram[];
+}
+
 /** Where a point of a cloud is, exactly as its file has it, and what measuring from it needs. */
 export interface PlacedPoint {
     integers: Vector;

@@ -7,8 +7,11 @@ import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
 import type {
     Camera,
+    CloudFacts,
     CloudState,
     Counters,
+    Gradients,
+    HistogramRequest,
     Limits,
     MeasureAnswer,
     MeasureRequest,
@@ -17,6 +20,7 @@ import type {
     Projection,
     Style,
     Vector,
+    ViewCounts,
 } from './values.ts';
 
 type Partially<T> = { [K in keyof T]?: T[K] extends unknown[] ? T[K] : T[K] extends object ? Partial<T[K]> : T[K] };
@@ -76,6 +80,10 @@ export class Viewer {
     clouds(): CloudState[] {
         return this.json<CloudState[]>(this.program._stipple_clouds());
     }
+    /** Null unless the cloud is ready. */
+    cloudFacts(id: number): CloudFacts | null {
+        return this.json<CloudFacts | null>(this.program._stipple_cloud_facts(id));
+    }
 
     resize(width: number, height: number): void {
         this.program._stipple_resize(width, height);
@@ -97,6 +105,13 @@ export class Viewer {
     }
     limits(): Limits {
         return this.json<Limits>(this.program._stipple_limits());
+    }
+    /** With the ranges that the style leaves to the clouds. */
+    drawnStyle(): Style {
+        return this.json<Style>(this.program._stipple_drawn_style());
+    }
+    gradients(): Gradients {
+        return this.json<Gradients>(this.program._stipple_gradients());
     }
 
     orbit(dx: number, dy: number): void {
@@ -159,6 +174,15 @@ export class Viewer {
     /** The place alone, as soon as the picture has answered. */
     takePlace(): { pending: boolean; place?: Vector | null; error?: string } {
         return this.json(this.program._stipple_take_place());
+    }
+
+    /** Asks how often values occur in the picture (client/core/view_counter.hpp); [] ends that. */
+    count(requests: HistogramRequest[]): void {
+        this.change(requests, (at) => this.program._stipple_count(at));
+    }
+    /** Counts for a few milliseconds. */
+    takeCounts(): { pending: boolean; counts?: ViewCounts } {
+        return this.json(this.program._stipple_take_counts());
     }
 
     /** client/survey/measure_json.hpp. Throws the sentence of what can't be measured. */
