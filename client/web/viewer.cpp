@@ -174,6 +174,19 @@ bool Viewer::fly(double t) {
     return true;
 }
 
+Result<double> Viewer::setTrack(std::string_view json) {
+    STIPPLE_TRY(track, cameraTrackFromJson(json));
+    track_ = std::move(track);
+    return track_->duration();
+}
+bool Viewer::followTrack(double seconds) {
+    if (!track_)
+        return false;
+    pendingView_.reset();
+    session_->setCamera(track_->at(seconds));
+    return true;
+}
+
 Status Viewer::showView(const std::string& name) {
     pendingView_ = namedViewFromName(name);
     if (!pendingView_)

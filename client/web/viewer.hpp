@@ -2,6 +2,7 @@
 // page calls frame() when it was woken or changed something, never otherwise.
 #pragma once
 
+#include "client/core/camera_track.hpp"
 #include "client/core/navigation.hpp"
 #include "client/core/view_session.hpp"
 #include "client/render/gles_renderer.hpp"
@@ -57,6 +58,11 @@ class Viewer {
     // Goes to t (0..1) of it; at 1 it is over. False if no flight is under way: another step of the camera
     // ends it.
     bool fly(double t);
+
+    // The camera path that followTrack() goes along (client/core/camera_track.hpp): its duration in seconds.
+    Result<double> setTrack(std::string_view json);
+    // To where it is after so many seconds. False if there is none.
+    bool followTrack(double seconds);
 
     // Shows everything from a named side; remembered until there is something to show.
     Status showView(const std::string& name);
@@ -136,6 +142,7 @@ class Viewer {
     std::optional<Error> drawError_;
     std::optional<PickHit> picked_; // whose values are on their way
     std::optional<ViewCounter> counter_;
+    std::optional<CameraTrack> track_;
     std::optional<Flight> flight_;
     Camera flown_; // where the flight had come to
 };

@@ -119,6 +119,13 @@ EMSCRIPTEN_KEEPALIVE double stipple_fly_to_cloud(std::uint32_t id) {
 EMSCRIPTEN_KEEPALIVE int stipple_fly(double t) {
     return viewer->fly(t) ? 1 : 0;
 }
+EMSCRIPTEN_KEEPALIVE const char* stipple_set_track(const char* json) {
+    Result<double> duration = viewer->setTrack(json);
+    return give(duration.ok() ? std::string() : duration.error().sentence());
+}
+EMSCRIPTEN_KEEPALIVE int stipple_follow_track(double seconds) {
+    return viewer->followTrack(seconds) ? 1 : 0;
+}
 EMSCRIPTEN_KEEPALIVE const char* stipple_show_view(const char* name) {
     return give(viewer->showView(name));
 }

@@ -48,6 +48,8 @@ export interface ViewerProgram extends Program {
     _stipple_fly_to_point(x: number, y: number, z: number, part: number): number;
     _stipple_fly_to_cloud(id: number): number;
     _stipple_fly(t: number): number;
+    _stipple_set_track(json: Address): Address;
+    _stipple_follow_track(seconds: number): number;
     _stipple_show_view(name: Address): Address;
     _stipple_set_projection(name: Address): Address;
     _stipple_pick(x: number, y: number, radius: number): Address;

@@ -155,6 +155,13 @@ export interface AttributeFacts {
 /** client/core/gradients.hpp: colours from low values to high. */
 export type Gradients = Record<Style['gradient'], { colours: Vector[]; isColourBlindSafe: boolean }>;
 
+/** client/core/camera_track.hpp. */
+export interface Keyframe {
+    camera: Camera;
+    /** Since the keyframe before. */
+    seconds: number;
+}
+
 /** client/core/view_counter.hpp. */
 export interface HistogramRequest {
     colourMode: ColourMode;

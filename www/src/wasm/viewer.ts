@@ -12,6 +12,7 @@ import type {
     Counters,
     Gradients,
     HistogramRequest,
+    Keyframe,
     Limits,
     MeasureAnswer,
     MeasureRequest,
@@ -155,6 +156,13 @@ export class Viewer {
     /** Goes to t (0..1) of the flight; false if it is over. */
     fly(t: number): boolean {
         return this.program._stipple_fly(t) !== 0;
+    }
+    /** client/core/camera_track.hpp; followTrack() goes along it. */
+    setTrack(keyframes: Keyframe[]): void {
+        this.change({ keyframes }, (at) => this.program._stipple_set_track(at));
+    }
+    followTrack(seconds: number): void {
+        this.program._stipple_follow_track(seconds);
     }
     showView(view: NamedView): void {
         this.heap.lendTexts([view], (at) => this.expect(this.program._stipple_show_view(at!)));
