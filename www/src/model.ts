@@ -3,6 +3,8 @@ import { Clipping } from './clipping/clipping.ts';
 import { Frames } from './drawing/frames.ts';
 import { Picking } from './drawing/picking.ts';
 import { Surface } from './drawing/surface.ts';
+import { Looks } from './looks/looks.ts';
+import { ViewCounting } from './looks/view_counting.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { CameraMoves } from './navigation/camera_moves.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
@@ -41,6 +43,9 @@ export class Model extends EventTarget {
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
     readonly scenes: Scenes;
+    /** How often values occur in the picture. */
+    readonly counting: ViewCounting;
+    readonly looks: Looks;
     readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);
     readonly profile = new Profile(this);
@@ -71,6 +76,8 @@ export class Model extends EventTarget {
         this.picking = new Picking(this, viewer);
         this.camera = new CameraMoves(this, viewer);
         this.scenes = new Scenes(this, viewer);
+        this.counting = new ViewCounting(this, viewer);
+        this.looks = new Looks(this, viewer, this.counting);
         this.read();
         this.surface.follow(this.frames, {
             lost: () => this.setContextLost(true),
@@ -228,6 +235,7 @@ export class Model extends EventTarget {
         this.camera.stop();
         this.picking.stop();
         this.profile.close();
+        this.counting.stop();
         this.viewer.dispose();
         this.surface.release();
     }

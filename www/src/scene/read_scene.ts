@@ -38,6 +38,8 @@ export function readScene(text: string): Scene {
         unit: fields.oneOf('unit', displayUnits, 'stored'),
         measurements: fields.list('measurements', 10_000, readMeasurement),
         annotations: fields.list('annotations', 10_000, readAnnotation),
+        followsView: fields.flag('followsView', false),
+        legend: fields.flag('legend', true),
     };
     fields.finish();
     checkTree(scene.annotations);

@@ -8,7 +8,7 @@ import type { Camera, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/va
  * What a person has set up, as JSON: clouds, camera, looks, measurements. A reader of a later version reads earlier ones;
  * fields that are absent have their defaults, fields that nobody knows are an error.
  */
-export const sceneVersion = 1;
+export const sceneVersion = 2;
 
 export interface SceneCloud {
     /** Of the file, absolute or relative to the page; or the name of a file that has to be opened by hand. */
@@ -38,6 +38,9 @@ export interface Scene {
     unit: DisplayUnit;
     measurements: SceneMeasurement[];
     annotations: Annotation[];
+    /** The range of the colours is that of what is in view. */
+    followsView: boolean;
+    legend: boolean;
 }
 
 /** The fields of `value` that are not as in `defaults`. */

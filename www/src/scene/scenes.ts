@@ -35,6 +35,8 @@ export class Scenes {
             unit: model.measuring.unit,
             measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
             annotations: model.annotations.items,
+            followsView: model.looks.followsView,
+            legend: model.looks.showsLegend,
         };
     }
 
@@ -71,6 +73,8 @@ export class Scenes {
         model.annotations.replace(
             scene.annotations.map((item) => ({ ...item, title: item.title || texts.text('annotations.one') })),
         );
+        model.looks.followsView = scene.followsView;
+        model.looks.showsLegend = scene.legend;
         model.camera.rememberSoon();
     }
 

@@ -3,6 +3,7 @@ import './annotation_panel.ts';
 import './clip_overlay.ts';
 import './clip_panel.ts';
 import './cloud_list.ts';
+import './legend_overlay.ts';
 import './look_panel.ts';
 import './measure_overlay.ts';
 import './measure_panel.ts';
@@ -123,6 +124,13 @@ export class App extends ModelElement {
                 align-self: end;
                 min-width: 0;
             }
+            .legend {
+                grid-column: 2;
+                grid-row: 3;
+                justify-self: start;
+                align-self: end;
+                pointer-events: none !important;
+            }
             .status {
                 grid-column: 2 / 4;
                 grid-row: 3;
@@ -239,6 +247,12 @@ export class App extends ModelElement {
                 .status {
                     grid-column: 1;
                     grid-row: 2;
+                    align-self: end;
+                }
+                .legend {
+                    grid-column: 1;
+                    grid-row: 1;
+                    align-self: end;
                 }
             }
             @media (prefers-reduced-motion: reduce) {
@@ -311,6 +325,7 @@ export class App extends ModelElement {
                       <stipple-profile .model=${this.model}></stipple-profile>
                   </aside>`
                 : ''}
+            <stipple-legend class="legend" .model=${this.model}></stipple-legend>
             ${this.renderStatus()}
             ${this.helpIsOpen && this.has('help', () => import('./help_panel.ts'))
                 ? html`<div class="panel help" role="dialog" aria-label=${this.text('help')}>

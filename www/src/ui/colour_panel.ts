@@ -1,17 +1,20 @@
+import './class_list.ts';
+import './histogram.ts';
+
 import { css, html, type TemplateResult } from 'lit';
 
-import type { CloudClass, ColourMode, Style } from '../wasm/values.ts';
-import { select } from './fields.ts';
+import { attributeOfMode, attributeRequest, colourRequest, rangeFields } from '../looks/ranges.ts';
+import type { AttributeFilter, ColourMode, Style } from '../wasm/values.ts';
+import { checkbox, select } from './fields.ts';
+import type { RangeChange } from './histogram.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const gradients: Style['gradient'][] = ['viridis', 'inferno', 'grey', 'turbo', 'spectral', 'terrain'];
-/** Lightness rises all the way in these. */
-const safeGradients = new Set<Style['gradient']>(['viridis', 'inferno', 'grey']);
 
 /** The attribute that a mode needs; modes without one any cloud has. */
 const modes: [ColourMode, string?][] = [
-    ['rgb'],
+    ['rgb', 'Red'],
     ['intensity', 'Intensity'],
     ['elevation'],
     ['classification', 'Classification'],
@@ -21,20 +24,10 @@ const modes: [ColourMode, string?][] = [
     ['gpsTime', 'GPS Time'],
     ['level'],
     ['attribute'],
-    ['mix'],
+    ['mix', 'Intensity'],
 ];
 
-type RangeField = 'intensityRange' | 'elevationRange' | 'levelRange' | 'attributeRange';
-const rangeFields: Partial<Record<ColourMode, RangeField>> = {
-    intensity: 'intensityRange',
-    elevation: 'elevationRange',
-    level: 'levelRange',
-    returnNumber: 'attributeRange',
-    numberOfReturns: 'attributeRange',
-    pointSourceId: 'attributeRange',
-    gpsTime: 'attributeRange',
-    attribute: 'attributeRange',
-};
+const mostFilters = 64;
 
 /** What colours the points, and which of them are shown. */
 export class ColourPanel extends ModelElement {
@@ -79,41 +72,16 @@ export class ColourPanel extends ModelElement {
                     monospace;
                 resize: vertical;
             }
-            ul {
-                list-style: none;
-                margin: 0.35rem 0 0;
-                padding: 0;
-            }
-            li label {
-                display: grid;
-                grid-template-columns: auto auto 1fr auto;
-                align-items: center;
-                gap: 0.5rem;
-                min-height: 1.75rem;
-            }
-            .swatch {
-                width: 0.9rem;
-                height: 0.9rem;
-                border-radius: 3px;
-            }
-            .points {
-                color: var(--muted);
-                font-variant-numeric: tabular-nums;
-            }
         `,
     ];
 
     override render(): TemplateResult {
-        return html`${this.renderColour()} ${this.renderClasses()} ${this.renderFilter()} ${this.renderClip()}`;
-    }
-
-    private get attributeNames(): string[] {
-        return [...new Set(this.model.clouds.flatMap((cloud) => cloud.attributes ?? []))];
+        return html`${this.renderColour()} ${this.renderClasses()} ${this.renderFilters()} ${this.renderClip()}`;
     }
 
     private renderColour(): TemplateResult {
         const { style } = this.model;
-        const attributes = this.attributeNames;
+        const attributes = this.model.looks.attributeNames();
         const offered = modes.filter(
             ([mode, needed]) => mode === style.colourMode || needed === undefined || attributes.includes(needed),
         );
@@ -142,6 +110,11 @@ export class ColourPanel extends ModelElement {
                       (gradient) => this.model.changeStyle({ gradient }),
                   )}
             ${this.renderRange()}
+            ${rangeFields[style.colourMode] || style.colourMode === 'classification'
+                ? checkbox(this.text('colour.legend'), this.model.looks.showsLegend, (isShown) =>
+                      this.model.looks.showLegend(isShown),
+                  )
+                : ''}
             <label class="row">
                 <span>${this.text('colour.background')}</span>
                 <input
@@ -159,12 +132,12 @@ export class ColourPanel extends ModelElement {
 
     private nameOf(gradient: Style['gradient']): string {
         const name = this.text(`gradient.${gradient}`);
-        return safeGradients.has(gradient) ? this.text('gradient.safe', { name }) : name;
+        return this.model.looks.gradients[gradient].isColourBlindSafe ? this.text('gradient.safe', { name }) : name;
     }
 
     private changeMode(colourMode: ColourMode): void {
         const { style } = this.model;
-        const first = style.attribute || this.attributeNames[0];
+        const first = style.attribute || this.model.looks.attributeNames()[0];
         if (colourMode === 'attribute' && first === undefined) return;
         this.model.changeStyle({
             colourMode,
@@ -176,16 +149,34 @@ export class ColourPanel extends ModelElement {
         });
     }
 
-    /** The range along the gradient; empty: from the clouds. */
+    /** The range along the gradient; without one from the clouds, or from what is in view. */
     private renderRange(): TemplateResult | '' {
-        const { style } = this.model;
+        const { model } = this, { style, looks } = model;
         const field = rangeFields[style.colourMode];
         if (!field) return '';
-        const range = style[field];
-        return this.renderLimits(this.text('colour.range'), range?.[0], range?.[1], (min, max) => {
-            if (min === undefined && max === undefined) this.model.changeStyle({ [field]: null });
-            else if (min !== undefined && max !== undefined) this.model.changeStyle({ [field]: [min, max] });
-        });
+        const range = style[field], isCounted = colourRequest(style) !== undefined;
+        return html`${isCounted ? this.renderColourHistogram() : ''}
+            ${this.renderLimits(this.text('colour.range'), range?.[0], range?.[1], (min, max) => {
+                if (min === undefined && max === undefined) looks.setRange(null);
+                else if (min !== undefined && max !== undefined) looks.setRange([min, max]);
+            })}
+            ${isCounted
+                ? checkbox(this.text('colour.ofView'), looks.followsView, (follows) => looks.followView(follows))
+                : ''}`;
+    }
+
+    private renderColourHistogram(): TemplateResult {
+        const { model } = this, { style, looks } = model, field = rangeFields[style.colourMode]!;
+        return html`<stipple-histogram
+            .model=${model}
+            .label=${this.text('colour.handles')}
+            .request=${colourRequest(style)}
+            .range=${style[field]}
+            .automatic=${looks.drawnStyle()[field] ?? undefined}
+            .colours=${looks.gradients[style.gradient].colours}
+            .isWhole=${looks.isWhole(attributeOfMode(style) ?? '')}
+            @range=${({ detail }: RangeChange) => looks.setRange(detail)}
+        ></stipple-histogram>`;
     }
 
     private renderLimits(
@@ -214,74 +205,59 @@ export class ColourPanel extends ModelElement {
         </div>`;
     }
 
-    /** The classes of all clouds together. */
     private renderClasses(): TemplateResult | '' {
-        const classes = new Map<number, CloudClass>();
-        for (const cloud of this.model.clouds)
-            for (const one of cloud.classes ?? []) {
-                const before = classes.get(one.class);
-                classes.set(one.class, { ...one, points: one.points + (before?.points ?? 0) });
-            }
-        if (classes.size < 2 && this.model.style.hiddenClasses.length === 0) return '';
-        const hidden = new Set(this.model.style.hiddenClasses);
-        const nameOf = (one: CloudClass): string => this.texts.translated('class', one.name);
-        const show = (value: number, isShown: boolean): void => {
-            if (isShown) hidden.delete(value);
-            else hidden.add(value);
-            this.model.changeStyle({ hiddenClasses: [...hidden] });
-        };
+        const { model } = this;
+        const hasSome = model.looks.classes().length > 1 || model.style.hiddenClasses.length > 0;
+        return hasSome ? html`<stipple-classes .model=${model}></stipple-classes>` : '';
+    }
+
+    /** Ranges that hide what lies outside of them, and one more to choose. */
+    private renderFilters(): TemplateResult | '' {
+        const attributes = this.model.looks.attributeNames();
+        if (attributes.length === 0) return '';
+        const { filters } = this.model.style;
         return html`<fieldset>
-            <legend>${this.text('classes')}</legend>
-            <ul>
-                ${[...classes.values()]
-                    .sort((a, b) => a.class - b.class)
-                    .map(
-                        (one) =>
-                            html`<li>
-                                <label>
-                                    <input
-                                        type="checkbox"
-                                        aria-label=${this.text('classes.label', { number: one.class, name: nameOf(one) })}
-                                        .checked=${!hidden.has(one.class)}
-                                        @change=${(event: Event) =>
-                                            show(one.class, (event.target as HTMLInputElement).checked)}
-                                    />
-                                    <span class="swatch" .style=${`background: rgb(${one.colour.join(',')})`}></span>
-                                    <span>${one.class} ${nameOf(one)}</span>
-                                    <span class="points">${this.texts.compact(one.points)}</span>
-                                </label>
-                            </li>`,
-                    )}
-            </ul>
+            <legend>${this.text('filter')}</legend>
+            ${filters.map((filter, at) => this.renderFilter(filter, at, attributes))}
+            ${filters.length < mostFilters ? this.renderFilterChoice(filters.length, undefined, attributes) : ''}
         </fieldset>`;
     }
 
-    /** One filter; more of them come by JSON. */
-    private renderFilter(): TemplateResult | '' {
-        const attributes = this.attributeNames;
-        if (attributes.length === 0) return '';
-        const [filter] = this.model.style.filters;
-        const change = (attribute: string, min?: number | null, max?: number | null): void =>
-            this.model.changeStyle({
-                filters: attribute === '' ? [] : [{ attribute, min: min ?? null, max: max ?? null }],
-            });
-        return html`<fieldset>
-            <legend>${this.text('filter')}</legend>
-            ${select(
-                this.text('filter.by'),
-                filter?.attribute ?? '',
-                [['', this.text('filter.all')], ...attributes.map((name): [string, string] => [name, name])],
-                (attribute) => change(attribute),
-            )}
-            ${filter
-                ? this.renderLimits(
-                      this.text('filter.fromTo'),
-                      filter.min ?? undefined,
-                      filter.max ?? undefined,
-                      (min, max) => change(filter.attribute, min, max),
-                  )
-                : ''}
-        </fieldset>`;
+    private renderFilterChoice(at: number, filter: AttributeFilter | undefined, attributes: string[]): TemplateResult {
+        return select(
+            at === 0 ? this.text('filter.by') : this.text('filter.and'),
+            filter?.attribute ?? '',
+            [['', at === 0 ? this.text('filter.all') : '…'], ...attributes.map((name): [string, string] => [name, name])],
+            (attribute) => this.changeFilter(at, attribute === '' ? undefined : { attribute, min: null, max: null }),
+        );
+    }
+
+    private renderFilter(filter: AttributeFilter, at: number, attributes: string[]): TemplateResult {
+        const { attribute, min, max } = filter;
+        const change = (least?: number, most?: number): void =>
+            this.changeFilter(at, { attribute, min: least ?? null, max: most ?? null });
+        return html`${this.renderFilterChoice(at, filter, attributes)}
+            <stipple-histogram
+                .model=${this.model}
+                .label=${this.text('filter.shown', { attribute })}
+                .request=${attributeRequest(attribute)}
+                .range=${min === null && max === null ? null : [min, max]}
+                .isWhole=${this.model.looks.isWhole(attribute)}
+                @range=${({ detail }: RangeChange) => change(detail?.[0], detail?.[1])}
+            ></stipple-histogram>
+            ${this.renderLimits(
+                at === 0 ? this.text('filter.fromTo') : this.text('filter.fromToNumbered', { number: at + 1 }),
+                min ?? undefined,
+                max ?? undefined,
+                change,
+            )}`;
+    }
+
+    /** Undefined takes the filter away. */
+    private changeFilter(at: number, filter: AttributeFilter | undefined): void {
+        const filters = [...this.model.style.filters];
+        filters.splice(at, 1, ...(filter ? [filter] : []));
+        this.model.changeStyle({ filters });
     }
 
     private renderClip(): TemplateResult {

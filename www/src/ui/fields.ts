@@ -28,6 +28,21 @@ export function choice<T extends string>(
     </div>`;
 }
 
+/** Yes or no. */
+export function checkbox(label: string, value: boolean, change: (value: boolean) => void): TemplateResult {
+    return html`<label class="row">
+        <span>${label}</span>
+        <span>
+            <input
+                type="checkbox"
+                aria-label=${label}
+                .checked=${value}
+                @change=${(event: Event) => change((event.target as HTMLInputElement).checked)}
+            />
+        </span>
+    </label>`;
+}
+
 /** One of many, as a list to pull down. */
 export function select<T extends string>(
     label: string,

@@ -2,6 +2,7 @@ import './colour_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
 
+import type { Quality } from '../looks/looks.ts';
 import { choice, slider } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
@@ -100,6 +101,13 @@ export class LookPanel extends ModelElement {
         const isContinuous = style.detail.mode === 'continuous';
         return html`<fieldset>
             <legend>${this.text('points')}</legend>
+            ${choice<Quality | ''>(
+                this.text('points.quality'),
+                'quality',
+                this.model.looks.quality() ?? '',
+                (['fast', 'balanced', 'fine', 'best'] as const).map((quality) => [quality, this.text(`points.${quality}`)]),
+                (quality) => quality && this.model.looks.choose(quality),
+            )}
             ${slider(
                 this.text('points.budget'),
                 limits.pointBudget,
