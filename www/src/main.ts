@@ -15,6 +15,8 @@ async function start(): Promise<void> {
     const model = StippleViewer.modelOf(viewer);
     document.documentElement.lang = model.texts.locale;
     installTestHook(model);
+    const tiles = query.get('tiles');
+    if (tiles !== null) model.baseLayer = { template: tiles, attribution: query.get('tileAttribution') ?? '' };
     addEventListener('hashchange', () => void openLinkedScene(viewer));
     if (!(await openLinkedScene(viewer))) await openClouds(viewer);
 }

@@ -5,6 +5,8 @@ import { Picking } from './drawing/picking.ts';
 import { Surface } from './drawing/surface.ts';
 import { Looks } from './looks/looks.ts';
 import { ViewCounting } from './looks/view_counting.ts';
+import type { BaseLayer } from './map/cloud_map.ts';
+import { Geography } from './map/geography.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { CameraMoves } from './navigation/camera_moves.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
@@ -46,6 +48,10 @@ export class Model extends EventTarget {
     /** How often values occur in the picture. */
     readonly counting: ViewCounting;
     readonly looks: Looks;
+    readonly geography = new Geography(this);
+    isMapOpen = false;
+    /** Of the map, where the page names one. */
+    baseLayer: BaseLayer | undefined;
     readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);
     readonly profile = new Profile(this);
@@ -160,6 +166,10 @@ export class Model extends EventTarget {
     }
     changeLimits(change: Partial<Limits>): void {
         this.act(() => this.viewer.setLimits(change));
+    }
+    showMap(isOpen: boolean): void {
+        this.isMapOpen = isOpen;
+        this.changed();
     }
     setNavigation(mode: NavigationMode): void {
         this.navigator.mode = mode;

@@ -1,7 +1,7 @@
-import type { Vector } from '../wasm/values.ts';
+import type { PlacedPoint, Vector } from '../wasm/values.ts';
 import { kindOf, type Measurement } from './measurement.ts';
 
-/** Files of measurements for other programs. Coordinates and lengths are in the cloud's own unit and system. */
+/** Files of measurements for other programs. Coordinates and lengths are in the cloud's own unit and system, but for GeoJSON's coordinates. */
 export type ExportFormat = 'json' | 'csv' | 'geojson' | 'dxf';
 
 export const exportFormats: { format: ExportFormat; label: string; type: string }[] = [
@@ -11,11 +11,15 @@ export const exportFormats: { format: ExportFormat; label: string; type: string 
     { format: 'dxf', label: 'DXF', type: 'image/vnd.dxf' },
 ];
 
-export function exportText(items: Measurement[], format: ExportFormat): string {
+/** Longitude and latitude (WGS 84) of points. */
+export type LonLats = ReadonlyMap<PlacedPoint, [number, number]>;
+
+/** `lonLats` of every point: what GeoJSON is in where they are known. */
+export function exportText(items: Measurement[], format: ExportFormat, lonLats?: LonLats): string {
     const writers: Record<ExportFormat, (items: Measurement[]) => string> = {
         json: asJson,
         csv: asCsv,
-        geojson: asGeoJson,
+        geojson: (all) => asGeoJson(all, lonLats),
         dxf: asDxf,
     };
     return writers[format](items);
@@ -72,25 +76,30 @@ function csvField(value: string | number): string {
 }
 
 /**
- * RFC 7946 wants longitude and latitude; coordinates of another system go with the `crs` member of GeoJSON 2008, which
- * programs that read projected coordinates look at.
+ * RFC 7946: longitude and latitude, with the cloud's own exact coordinates among the properties. Where these are not known,
+ * the cloud's coordinates with the `crs` member of GeoJSON 2008, which programs that read projected coordinates look at.
  */
-function asGeoJson(items: Measurement[]): string {
+function asGeoJson(items: Measurement[], lonLats?: LonLats): string {
     const { epsg } = items[0]?.points[0] ?? { epsg: null };
     const features = items.map((item) => ({
         type: 'Feature',
-        properties: { name: item.name, kind: item.kind, unit: item.points[0]!.unit, ...numbersOf(item) },
-        geometry: geometryOf(item),
+        properties: {
+            name: item.name,
+            kind: item.kind,
+            unit: item.points[0]!.unit,
+            ...numbersOf(item),
+            ...(lonLats && { crs: item.points[0]!.crs, epsg: item.points[0]!.epsg, coordinates: positions(item) }),
+        },
+        geometry: geometryOf(item, lonLats ? item.points.map((point) => lonLats.get(point)!) : positions(item)),
     }));
     return `${JSON.stringify({
         type: 'FeatureCollection',
-        ...(epsg && { crs: { type: 'name', properties: { name: `urn:ogc:def:crs:EPSG::${epsg}` } } }),
+        ...(epsg && !lonLats && { crs: { type: 'name', properties: { name: `urn:ogc:def:crs:EPSG::${epsg}` } } }),
         features,
     })}\n`;
 }
 
-function geometryOf(item: Measurement): object {
-    const places = positions(item);
+function geometryOf(item: Measurement, places: number[][]): object {
     if (places.length === 1) return { type: 'Point', coordinates: places[0] };
     if (kindOf(item.kind).isClosed && places.length > 2)
         return { type: 'Polygon', coordinates: [counterClockwise([...places, places[0]!])] };
@@ -98,11 +107,11 @@ function geometryOf(item: Measurement): object {
 }
 
 /** RFC 7946 §3.1.6: outer rings run counter-clockwise. */
-function counterClockwise(ring: Vector[]): Vector[] {
-    const [x0, y0] = ring[0]!;
+function counterClockwise(ring: number[][]): number[][] {
+    const [x0, y0] = ring[0]! as [number, number];
     const twice = ring
         .slice(1)
-        .reduce((sum, [x, y], i) => sum + (ring[i]![0] - x0) * (y - y0) - (x - x0) * (ring[i]![1] - y0), 0);
+        .reduce((sum, [x, y], i) => sum + (ring[i]![0]! - x0) * (y! - y0) - (x! - x0) * (ring[i]![1]! - y0), 0);
     return twice < 0 ? [...ring].reverse() : ring;
 }
 

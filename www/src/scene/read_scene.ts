@@ -40,6 +40,7 @@ export function readScene(text: string): Scene {
         annotations: fields.list('annotations', 10_000, readAnnotation),
         followsView: fields.flag('followsView', false),
         legend: fields.flag('legend', true),
+        map: fields.flag('map', false),
     };
     fields.finish();
     checkTree(scene.annotations);

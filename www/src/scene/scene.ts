@@ -41,6 +41,7 @@ export interface Scene {
     /** The range of the colours is that of what is in view. */
     followsView: boolean;
     legend: boolean;
+    map: boolean;
 }
 
 /** The fields of `value` that are not as in `defaults`. */

@@ -37,6 +37,7 @@ export class Scenes {
             annotations: model.annotations.items,
             followsView: model.looks.followsView,
             legend: model.looks.showsLegend,
+            map: model.isMapOpen,
         };
     }
 
@@ -75,6 +76,7 @@ export class Scenes {
         );
         model.looks.followsView = scene.followsView;
         model.looks.showsLegend = scene.legend;
+        model.isMapOpen = scene.map;
         model.camera.rememberSoon();
     }
 

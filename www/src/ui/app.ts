@@ -118,6 +118,13 @@ export class App extends ModelElement {
                 z-index: 1;
                 background: var(--panel-solid);
             }
+            .map {
+                grid-column: 3;
+                grid-row: 1;
+                align-self: end;
+                width: 330px;
+                max-width: 100%;
+            }
             .profile {
                 grid-column: 2 / 4;
                 grid-row: 2;
@@ -235,9 +242,14 @@ export class App extends ModelElement {
                     justify-self: start;
                     max-height: 40cqh;
                 }
-                .profile {
+                .profile,
+                .map {
                     grid-column: 1;
                     grid-row: 1;
+                }
+                .map {
+                    width: 100%;
+                    align-self: start;
                 }
                 /* One at a time. */
                 .counters:has(~ .point, ~ .profile),
@@ -318,6 +330,11 @@ export class App extends ModelElement {
             ${this.model.picking.point && this.has('point', () => import('./point_panel.ts'))
                 ? html`<aside class="panel point" aria-label=${this.text('point')} aria-live="polite">
                       <stipple-point .model=${this.model}></stipple-point>
+                  </aside>`
+                : ''}
+            ${this.model.isMapOpen && this.has('map', () => import('./map_panel.ts'))
+                ? html`<aside class="panel map" aria-label=${this.text('map')}>
+                      <stipple-map .model=${this.model}></stipple-map>
                   </aside>`
                 : ''}
             ${this.model.profile.isOpen && this.has('profile', () => import('./profile_panel.ts'))

@@ -1,6 +1,6 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { exportFormats, exportText, type ExportFormat } from '../measuring/exports.ts';
+import { exportFormats, exportText, type ExportFormat, type LonLats } from '../measuring/exports.ts';
 import { kindOf, kindsOfMeasurement, type Measurement } from '../measuring/measurement.ts';
 import type { Measuring } from '../measuring/measuring.ts';
 import { resultLines } from '../measuring/results.ts';
@@ -161,7 +161,7 @@ export class MeasurePanel extends ModelElement {
                       <div class="files">
                           ${exportFormats.map(
                               ({ format, label }) =>
-                                  html`<button @click=${() => this.save(format)}>${label}</button>`,
+                                  html`<button @click=${() => void this.save(format)}>${label}</button>`,
                           )}
                       </div>`
                 : ''}
@@ -257,9 +257,20 @@ export class MeasurePanel extends ModelElement {
         }
     }
 
-    private save(format: ExportFormat): void {
+    /** Longitude and latitude of every point; undefined unless all have them. */
+    private async lonLatsOf(items: Measurement[]): Promise<LonLats | undefined> {
+        const points = items.flatMap((item) => item.points);
+        const places = await Promise.all(points.map((point) => this.model.geography.lonLat(point)));
+        const lonLats = new Map(points.map((point, i) => [point, places[i]!]));
+        return places.includes(null) ? undefined : lonLats;
+    }
+
+    private async save(format: ExportFormat): Promise<void> {
         const { type } = exportFormats.find((known) => known.format === format)!;
-        const address = URL.createObjectURL(new Blob([exportText(this.measuring.items, format)], { type }));
+        const { items } = this.measuring;
+        const lonLats = format === 'geojson' ? await this.lonLatsOf(items) : undefined;
+        if (format === 'geojson' && !lonLats) this.model.notify(this.text('measure.noLonLat'));
+        const address = URL.createObjectURL(new Blob([exportText(items, format, lonLats)], { type }));
         const link = document.createElement('a');
         link.href = address;
         link.download = `measurements.${format}`;

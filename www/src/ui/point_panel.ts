@@ -1,5 +1,7 @@
 import { css, html, type TemplateResult } from 'lit';
 
+import type { LonLat } from '../map/projection.ts';
+import type { PickedPoint } from '../wasm/values.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
@@ -37,6 +39,24 @@ export class PointPanel extends ModelElement {
         `,
     ];
 
+    /** Of the point that is shown; null: it has none that is known. */
+    private lonLat: LonLat | null = null;
+    private located: PickedPoint | null = null;
+
+    override willUpdate(): void {
+        const picked = this.model.picking.point;
+        if (picked === this.located) return;
+        this.located = picked;
+        this.lonLat = null;
+        if (picked) void this.locate(picked);
+    }
+    private async locate(picked: PickedPoint): Promise<void> {
+        const lonLat = await this.model.geography.lonLat(picked);
+        if (picked !== this.located) return;
+        this.lonLat = lonLat;
+        this.requestUpdate();
+    }
+
     override render(): TemplateResult | string {
         const picked = this.model.picking.point;
         if (!picked) return '';
@@ -47,6 +67,10 @@ export class PointPanel extends ModelElement {
             </header>
             <dl>
                 ${this.row('X', 'X', x)} ${this.row('Y', 'Y', y)} ${this.row('Z', 'Z', z)}
+                ${this.lonLat
+                    ? html`${this.row('Longitude', this.text('point.longitude'), degrees(this.lonLat[0]))}
+                      ${this.row('Latitude', this.text('point.latitude'), degrees(this.lonLat[1]))}`
+                    : ''}
                 ${Object.entries(picked.values).map(([name, value]) => this.row(name, name, value))}
                 ${picked.crs ? this.row('CRS', this.text('point.crs'), picked.crs) : ''} ${this.row('Cloud', this.text('point.cloud'), picked.cloudName)}
                 ${this.row('Node', this.text('point.node'), `${picked.point.node}, ${picked.point.index}`)}
@@ -59,6 +83,11 @@ export class PointPanel extends ModelElement {
         return html`<dt>${name}</dt>
             <dd data-value=${field}>${text}</dd>`;
     }
+}
+
+/** To a millimetre on the ground. */
+function degrees(value: number): number {
+    return Number(value.toFixed(8));
 }
 
 customElements.define('stipple-point', PointPanel);

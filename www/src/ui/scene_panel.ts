@@ -56,6 +56,9 @@ export class ScenePanel extends ModelElement {
                 ${this.model.shareAddress === undefined
                     ? ''
                     : html`<button @click=${() => void this.share()}>${this.text('scene.link')}</button>`}
+                <button aria-pressed=${this.model.isMapOpen} @click=${() => this.model.showMap(!this.model.isMapOpen)}>
+                    ${this.text('map')}
+                </button>
                 <button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>
             </div>
             <input type="file" id="scene" accept=".json,application/json" @change=${this.load} />
