@@ -19,7 +19,7 @@ fi
 
 # The page is built anew when a source of it, or a program in it, changed. Servers send the coded copies.
 stamp=www/node_modules/.page
-sources=$( { find www/src -type f; ls www/index.html www/*.ts www/*.json scripts/compress_page.mjs \
+sources=$( { find www/src www/public -type f; ls www/index.html www/*.ts www/*.json scripts/compress_page.mjs \
   build/wasm/client/web/*.mjs build/wasm/client/web/*.wasm; } | LC_ALL=C sort | xargs sha256sum | sha256sum)
 if [ ! -e www/dist/index.html ] || [ "$(cat "$stamp" 2>/dev/null)" != "$sources" ]; then
   echo "building the page"

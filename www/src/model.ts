@@ -9,6 +9,7 @@ import type { BaseLayer } from './map/cloud_map.ts';
 import { Geography } from './map/geography.ts';
 import { Measuring } from './measuring/measuring.ts';
 import { CameraMoves } from './navigation/camera_moves.ts';
+import { Film } from './navigation/film.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
 import { Scenes } from './scene/scenes.ts';
@@ -52,6 +53,10 @@ export class Model extends EventTarget {
     isMapOpen = false;
     /** Of the map, where the page names one. */
     baseLayer: BaseLayer | undefined;
+    /** A camera path. */
+    readonly film = new Film(this);
+    /** Of pictures that are written, as far as a person said. */
+    wantedSize: { width?: number | undefined; height?: number | undefined } = {};
     readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);
     readonly profile = new Profile(this);
@@ -167,6 +172,16 @@ export class Model extends EventTarget {
     changeLimits(change: Partial<Limits>): void {
         this.act(() => this.viewer.setLimits(change));
     }
+    wantPicture(size: { width?: number | undefined; height?: number | undefined }): void {
+        this.wantedSize = size;
+        this.changed();
+    }
+    /** With one side given the other goes with it, as on the page. */
+    pictureSize(): { width: number; height: number } {
+        const { canvas, wantedSize } = this, aspect = canvas.width / canvas.height;
+        const width = wantedSize.width ?? (wantedSize.height ? Math.round(wantedSize.height * aspect) : canvas.width);
+        return { width, height: wantedSize.height ?? Math.round(width / aspect) };
+    }
     showMap(isOpen: boolean): void {
         this.isMapOpen = isOpen;
         this.changed();
@@ -246,6 +261,7 @@ export class Model extends EventTarget {
         this.picking.stop();
         this.profile.close();
         this.counting.stop();
+        this.film.stop();
         this.viewer.dispose();
         this.surface.release();
     }

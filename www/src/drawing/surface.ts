@@ -1,11 +1,21 @@
 import type { Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
+import { Problem } from '../texts/message.ts';
 import type { Frames } from './frames.ts';
+
+/** As the program has it (client/render/raster_setup.hpp), and as many pixels as a page can hold several times. */
+const mostPixelsASide = 16384;
+const mostPixels = 100e6;
+/** What a style may say (client/core/json.cpp). */
+const mostSize = 1000;
+const mostRadius = 100;
 
 /** The canvas that is drawn on: its size, its graphics context, its pixels. Places are CSS pixels of it. */
 export class Surface {
     private readonly stopping = new AbortController();
     private sizes: ResizeObserver | undefined;
+    /** The picture has another size than the canvas on the page, for a file. */
+    private isHeld = false;
 
     constructor(
         readonly canvas: HTMLCanvasElement,
@@ -21,14 +31,7 @@ export class Surface {
     follow(frames: Frames, context: { lost: () => void; restored: () => void }): void {
         const { signal } = this.stopping;
         this.sizes = new ResizeObserver(() => {
-            const { clientWidth, clientHeight } = this.canvas;
-            const ratio = window.devicePixelRatio || 1;
-            this.canvas.width = Math.max(1, Math.round(clientWidth * ratio));
-            this.canvas.height = Math.max(1, Math.round(clientHeight * ratio));
-            this.viewer.resize(this.canvas.width, this.canvas.height);
-            // Setting the size clears the canvas: draw before the browser shows it.
-            this.viewer.redraw();
-            frames.draw();
+            if (!this.isHeld) this.fill(frames);
         });
         this.sizes.observe(this.canvas);
         const lost = (event: Event): void => {
@@ -45,6 +48,60 @@ export class Surface {
         this.sizes?.disconnect();
         this.stopping.abort();
         this.canvas.getContext('webgl2')?.getExtension('WEBGL_lose_context')?.loseContext();
+    }
+
+    /** The size that it has on the page. */
+    private fill(frames: Frames): void {
+        const { clientWidth, clientHeight } = this.canvas;
+        const ratio = window.devicePixelRatio || 1;
+        this.resize(Math.max(1, Math.round(clientWidth * ratio)), Math.max(1, Math.round(clientHeight * ratio)));
+        // Setting the size clears the canvas: draw before the browser shows it.
+        this.viewer.redraw();
+        frames.draw();
+    }
+
+    private resize(width: number, height: number): void {
+        this.canvas.width = width;
+        this.canvas.height = height;
+        this.viewer.resize(width, height);
+    }
+
+    /**
+     * Does something while the picture has another size, in pixels; points and shadows grow with its height, so that it looks
+     * as on the page. The page's own comes back afterwards, whatever happens. Throws what is wrong with the size.
+     */
+    async withSize<T>(width: number, height: number, frames: Frames, work: () => Promise<T>): Promise<T> {
+        this.check(width, height);
+        if (this.isHeld) throw new Problem('picture.busy');
+        const style = this.viewer.style(), factor = height / this.canvas.height;
+        this.isHeld = true;
+        this.canvas.style.pointerEvents = 'none'; // the view stays as it is
+        try {
+            this.resize(width, height);
+            const { drawingBufferWidth, drawingBufferHeight } = this.canvas.getContext('webgl2')!;
+            if (drawingBufferWidth !== width || drawingBufferHeight !== height)
+                throw new Problem('picture.graphics', { width: drawingBufferWidth, height: drawingBufferHeight });
+            if (factor !== 1)
+                this.viewer.setStyle({
+                    sizePixels: Math.min(mostSize, style.sizePixels * factor),
+                    minSizePixels: Math.min(mostSize, style.minSizePixels * factor),
+                    maxSizePixels: Math.min(mostSize, style.maxSizePixels * factor),
+                    edl: { radiusPixels: Math.min(mostRadius, style.edl.radiusPixels * factor) },
+                });
+            this.viewer.refineAtRest();
+            return await work();
+        } finally {
+            this.viewer.setStyle(style);
+            this.canvas.style.pointerEvents = '';
+            this.isHeld = false;
+            this.fill(frames);
+        }
+    }
+
+    private check(width: number, height: number): void {
+        const isSide = (side: number): boolean => Number.isInteger(side) && side >= 1 && side <= mostPixelsASide;
+        if (!isSide(width) || !isSide(height) || width * height > mostPixels)
+            throw new Problem('picture.size', { most: mostPixelsASide, megapixels: mostPixels / 1e6 });
     }
 
     /** Where world positions are in the picture; null for what is behind the camera. */
@@ -68,7 +125,7 @@ export class Surface {
         return { width, height, rgba };
     }
 
-    /** The picture as a PNG, in the canvas's size. */
+    /** The picture as a PNG. */
     async picture(): Promise<Blob> {
         const { width, height, rgba } = this.readPixels();
         const canvas = new OffscreenCanvas(width, height);

@@ -1,5 +1,5 @@
 import type { Model } from '../model.ts';
-import type { Camera, NamedView, Projection, Vector } from '../wasm/values.ts';
+import type { Camera, Keyframe, NamedView, Projection, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 import { CameraHistory } from './camera_history.ts';
 
@@ -24,6 +24,19 @@ export class CameraMoves {
 
     read(): Camera {
         return this.viewer.camera();
+    }
+    /** The path that followTrack() goes along; throws what is wrong with it. */
+    setTrack(keyframes: Keyframe[]): void {
+        this.viewer.setTrack(keyframes);
+    }
+    followTrack(seconds: number): void {
+        this.step(() => this.viewer.followTrack(seconds));
+    }
+    /** For a picture that is to be settled: as a camera at rest. */
+    placeOnTrack(seconds: number): void {
+        this.viewer.followTrack(seconds);
+        this.viewer.refineAtRest();
+        this.model.wake();
     }
     /** The fields of client/core/camera.hpp; absent ones stay. */
     change(change: object): void {

@@ -1,8 +1,9 @@
 import type { Annotation } from '../annotations/annotation.ts';
 import { kindsOfMeasurement, kindOf } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
-import type { Camera, Limits, PlacedPoint, Style } from '../wasm/values.ts';
+import type { Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import { Problem } from '../texts/message.ts';
+import { mostKeyframes } from '../navigation/film.ts';
 import { FieldReader } from './fields.ts';
 import { type Scene, type SceneCloud, type SceneMeasurement, sceneVersion } from './scene.ts';
 
@@ -38,6 +39,7 @@ export function readScene(text: string): Scene {
         unit: fields.oneOf('unit', displayUnits, 'stored'),
         measurements: fields.list('measurements', 10_000, readMeasurement),
         annotations: fields.list('annotations', 10_000, readAnnotation),
+        cameraPath: fields.list('cameraPath', mostKeyframes, readKeyframe),
         followsView: fields.flag('followsView', false),
         legend: fields.flag('legend', true),
         map: fields.flag('map', false),
@@ -105,6 +107,17 @@ function readAnnotation(value: unknown, path: string): Annotation {
     };
     fields.finish();
     return annotation;
+}
+
+/** The program says what is wrong with the cameras. */
+function readKeyframe(value: unknown, path: string): Keyframe {
+    const fields = FieldReader.of(value, path);
+    const keyframe: Keyframe = {
+        camera: fields.object('camera') as unknown as Camera,
+        seconds: fields.number('seconds', 0, (seconds) => seconds > 0 && seconds <= 3600),
+    };
+    fields.finish();
+    return keyframe;
 }
 
 const deepestTree = 32;

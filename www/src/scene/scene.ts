@@ -2,11 +2,11 @@ import type { Annotation } from '../annotations/annotation.ts';
 import type { Measurement } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
-import type { Camera, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
+import type { Camera, Keyframe, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
 
 /**
  * What a person has set up, as JSON: clouds, camera, looks, measurements. A reader of a later version reads earlier ones;
- * fields that are absent have their defaults, fields that nobody knows are an error.
+ * fields that are absent have their defaults, fields that nobody knows are an error. www/public/scene.schema.json is its JSON Schema.
  */
 export const sceneVersion = 2;
 
@@ -38,6 +38,8 @@ export interface Scene {
     unit: DisplayUnit;
     measurements: SceneMeasurement[];
     annotations: Annotation[];
+    /** Since version 2. */
+    cameraPath: Keyframe[];
     /** The range of the colours is that of what is in view. */
     followsView: boolean;
     legend: boolean;

@@ -35,6 +35,7 @@ export class Scenes {
             unit: model.measuring.unit,
             measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
             annotations: model.annotations.items,
+            cameraPath: model.film.keyframes,
             followsView: model.looks.followsView,
             legend: model.looks.showsLegend,
             map: model.isMapOpen,
@@ -74,6 +75,7 @@ export class Scenes {
         model.annotations.replace(
             scene.annotations.map((item) => ({ ...item, title: item.title || texts.text('annotations.one') })),
         );
+        model.film.replace(scene.cameraPath);
         model.looks.followsView = scene.followsView;
         model.looks.showsLegend = scene.legend;
         model.isMapOpen = scene.map;
@@ -88,6 +90,7 @@ export class Scenes {
             viewer.setStyle({ ...this.defaults.style, ...scene.style });
             viewer.setLimits({ ...this.defaults.limits, ...scene.limits });
             viewer.setCamera(scene.camera);
+            if (scene.cameraPath.length > 0) viewer.setTrack(scene.cameraPath);
         } catch (error) {
             viewer.setStyle(before.style);
             viewer.setLimits(before.limits);

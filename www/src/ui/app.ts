@@ -3,6 +3,7 @@ import './annotation_panel.ts';
 import './clip_overlay.ts';
 import './clip_panel.ts';
 import './cloud_list.ts';
+import './film_panel.ts';
 import './legend_overlay.ts';
 import './look_panel.ts';
 import './measure_overlay.ts';
@@ -416,6 +417,7 @@ export class App extends ModelElement {
                 <stipple-clip .model=${this.model}></stipple-clip>
                 <stipple-annotations .model=${this.model}></stipple-annotations>
                 <stipple-look .model=${this.model}></stipple-look>
+                <stipple-film .model=${this.model}></stipple-film>
                 <stipple-scene .model=${this.model}></stipple-scene>
             </div>
         </section>`;

@@ -1,6 +1,7 @@
 import { css, html, type TemplateResult } from 'lit';
 
 import { toFragment } from '../scene/share_link.ts';
+import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
@@ -24,6 +25,23 @@ export class ScenePanel extends ModelElement {
             }
             input[type='file'] {
                 display: none;
+            }
+            .size {
+                display: grid;
+                grid-template-columns: 1fr auto 1fr;
+                align-items: center;
+                gap: 0.3rem;
+            }
+            .size input {
+                width: 100%;
+                min-width: 0;
+                font: inherit;
+                font-size: 0.85rem;
+                color: inherit;
+                background: var(--raised);
+                border: 1px solid var(--line);
+                border-radius: 5px;
+                padding: 0.25rem 0.4rem;
             }
             .link {
                 direction: ltr;
@@ -61,11 +79,38 @@ export class ScenePanel extends ModelElement {
                 </button>
                 <button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>
             </div>
+            ${this.renderSize()}
             <input type="file" id="scene" accept=".json,application/json" @change=${this.load} />
             ${this.link
                 ? html`<input class="link" readonly aria-label=${this.text('scene.linkLabel')} .value=${this.link} @focus=${selectAll} />`
                 : ''}
         </fieldset>`;
+    }
+
+    /** Of pictures that are written; without one that of the picture on the page. */
+    private renderSize(): TemplateResult {
+        const { model } = this, { canvas } = model;
+        const field = (label: string, value: number | undefined, shown: number, change: (value: number | undefined) => void): TemplateResult =>
+            html`<input
+                type="number"
+                min="1"
+                max="16384"
+                aria-label=${label}
+                placeholder=${String(shown)}
+                .value=${value === undefined ? '' : String(value)}
+                @change=${(event: Event) => {
+                    const { value: text } = event.target as HTMLInputElement;
+                    change(text === '' ? undefined : Number(text));
+                }}
+            />`;
+        return html`<div class="row">
+            <span>${this.text('picture.sizeLabel')}</span>
+            <div class="size">
+                ${field(this.text('picture.width'), model.wantedSize.width, canvas.width, (width) => model.wantPicture({ ...model.wantedSize, width }))}
+                ×
+                ${field(this.text('picture.height'), model.wantedSize.height, canvas.height, (height) => model.wantPicture({ ...model.wantedSize, height }))}
+            </div>
+        </div>`;
     }
 
     private save(): void {
@@ -92,7 +137,12 @@ export class ScenePanel extends ModelElement {
 
     private async picture(): Promise<void> {
         try {
-            download(await this.model.surface.picture(), 'picture.png');
+            const { model } = this, { width, height } = model.pictureSize();
+            const blob = await model.surface.withSize(width, height, model.frames, async () => {
+                await model.frames.settled();
+                return model.surface.picture();
+            });
+            download(blob, 'picture.png');
         } catch (error) {
             this.model.tell(error);
         }
@@ -101,15 +151,6 @@ export class ScenePanel extends ModelElement {
 
 function selectAll(event: Event): void {
     (event.target as HTMLInputElement).select();
-}
-
-function download(content: Blob, name: string): void {
-    const address = URL.createObjectURL(content);
-    const link = document.createElement('a');
-    link.href = address;
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
 
 customElements.define('stipple-scene', ScenePanel);
