@@ -262,6 +262,7 @@ export class Model extends EventTarget {
         this.profile.close();
         this.counting.stop();
         this.film.stop();
+        this.annotations.endTour();
         this.viewer.dispose();
         this.surface.release();
     }

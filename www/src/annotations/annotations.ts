@@ -7,6 +7,11 @@ const coveredPart = 0.98;
 /** Parts of the distance: how near a flight comes to an annotation without a view of its own. */
 const nearPart = 0.5;
 
+/** A tour stays at each so long, and longer by a character of its text. */
+const stayMs = 2000;
+const readMs = 50;
+const longestReadMs = 20_000;
+
 /** The annotations of the scene. 'change' says that something did. */
 export class Annotations extends EventTarget {
     items: Annotation[] = [];
@@ -16,6 +21,8 @@ export class Annotations extends EventTarget {
     isPlacing = false;
     /** Those that something hides. */
     readonly covered = new Set<number>();
+    isTouring = false;
+    private lastTour = 0;
     private lastId = 0;
     private isLooking = false;
     private lookAgain = false;
@@ -62,6 +69,7 @@ export class Annotations extends EventTarget {
         this.changed();
     }
     replace(items: Annotation[]): void {
+        if (this.isTouring) this.endTour();
         this.items = items;
         this.lastId = Math.max(0, ...items.map((item) => item.id));
         this.opened = 0;
@@ -89,9 +97,37 @@ export class Annotations extends EventTarget {
         else await this.model.camera.flyToPoint(item.position, nearPart);
     }
 
+    /** In the order of the tree, each before those that belong to it. */
+    inOrder(parent = 0): Annotation[] {
+        return this.childrenOf(parent).flatMap((item) => [item, ...this.inOrder(item.id)]);
+    }
+
+    /** From one to the next of those that are not hidden, each as long as its text takes to read. */
+    async tour(): Promise<void> {
+        const tour = ++this.lastTour;
+        this.isTouring = true;
+        for (const item of this.inOrder().filter((one) => !this.isHidden(one))) {
+            await this.flyTo(item.id);
+            if (tour !== this.lastTour) return;
+            await new Promise((resolve) => setTimeout(resolve, stayMs + Math.min(longestReadMs, readMs * item.text.length)));
+            if (tour !== this.lastTour) return;
+        }
+        this.endTour();
+    }
+    endTour(): void {
+        this.lastTour++;
+        this.isTouring = false;
+        this.changed();
+    }
+
+    private isHidden(item: Annotation): boolean {
+        for (let at: Annotation | undefined = item; at; at = this.find(at.parent)) if (at.hidden) return true;
+        return false;
+    }
+
     /** Neither hidden, with one that is, nor too far away. */
     isShown(item: Annotation): boolean {
-        for (let at: Annotation | undefined = item; at; at = this.find(at.parent)) if (at.hidden) return false;
+        if (this.isHidden(item)) return false;
         return item.maxDistance === 0 || this.distanceTo(item.position) <= item.maxDistance;
     }
 

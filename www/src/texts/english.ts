@@ -155,6 +155,8 @@ export const english = {
     'annotations.keepView': 'Keep this view',
     'annotations.keepViewInstead': 'Keep this view instead',
     'annotations.delete': 'Delete',
+    'annotations.tour': 'Tour from one to the next',
+    'annotations.endTour': 'End the tour',
 
     'view': 'View',
     'view.top': 'Top',

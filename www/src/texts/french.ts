@@ -157,6 +157,8 @@ export const french = translation({
     'annotations.keepView': 'Garder cette vue',
     'annotations.keepViewInstead': 'Garder plutôt cette vue',
     'annotations.delete': 'Supprimer',
+    'annotations.tour': 'Visite de l’une à l’autre',
+    'annotations.endTour': 'Terminer la visite',
 
     'view': 'Vue',
     'view.top': 'Dessus',

@@ -157,6 +157,8 @@ export const german = translation({
     'annotations.keepView': 'Diese Ansicht merken',
     'annotations.keepViewInstead': 'Stattdessen diese Ansicht merken',
     'annotations.delete': 'Löschen',
+    'annotations.tour': 'Rundgang von einer zur nächsten',
+    'annotations.endTour': 'Rundgang beenden',
 
     'view': 'Ansicht',
     'view.top': 'Oben',

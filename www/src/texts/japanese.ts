@@ -153,6 +153,8 @@ export const japanese = translation({
     'annotations.keepView': 'この視点を保存',
     'annotations.keepViewInstead': 'この視点に置き換える',
     'annotations.delete': '削除',
+    'annotations.tour': '順に巡る',
+    'annotations.endTour': '巡回を終える',
 
     'view': '視点',
     'view.top': '上面',

@@ -96,6 +96,11 @@ export class AnnotationPanel extends ModelElement {
             <button class="add" aria-pressed=${annotations.isPlacing} @click=${() => this.place()}>
                 ${this.text(annotations.isPlacing ? 'annotations.placing' : 'annotations.new')}
             </button>
+            ${annotations.items.length > 1
+                ? html`<button class="add" @click=${() => (annotations.isTouring ? annotations.endTour() : void annotations.tour())}>
+                      ${this.text(annotations.isTouring ? 'annotations.endTour' : 'annotations.tour')}
+                  </button>`
+                : ''}
             ${this.renderList(0)}
         </fieldset>`;
     }
