@@ -23,25 +23,9 @@ import css from 'ol/ol.css?inline';
 
 import { ticks } from '../looks/ranges.ts';
 import type { LonLat } from './projection.ts';
+import type { BaseLayer, MapFrame, MapShape } from './shapes.ts';
 
 export { css as mapStyles };
-
-/** Places are longitude and latitude on the earth, else x and y of the clouds. */
-export interface MapShape {
-    kind: 'footprint' | 'camera' | 'cone' | 'measurement';
-    geometry: 'point' | 'line' | 'polygon';
-    places: LonLat[];
-    name?: string;
-}
-
-/** Of the base layer: an XYZ template, and who made it. */
-export interface BaseLayer {
-    template: string;
-    attribution: string;
-}
-
-/** On the earth (longitudes and latitudes, base layer, graticule), or on the plane of a cloud's own coordinates. */
-export type MapFrame = { kind: 'earth' } | { kind: 'plane'; unitMeters: number };
 
 const accent = '#6cc5b4', ink = '#e8eaed', line = 'rgba(163, 171, 184, 0.45)';
 

@@ -2,9 +2,10 @@ import { css, html, type PropertyValues, type TemplateResult, unsafeCSS } from '
 
 import type { Whereabouts } from '../map/geography.ts';
 import { lonLatOf } from '../map/geography.ts';
-import type { BaseLayer, CloudMap, MapShape } from '../map/cloud_map.ts';
+import type { CloudMap } from '../map/cloud_map.ts';
 import { boxCorners, convexHull, footprint, movedTo, viewCone } from '../map/plan.ts';
 import type { LonLat } from '../map/projection.ts';
+import type { BaseLayer, MapShape } from '../map/shapes.ts';
 import { kindOf } from '../measuring/measurement.ts';
 import type { CloudState, Vector } from '../wasm/values.ts';
 import { ModelElement } from './model_element.ts';
