@@ -30,6 +30,11 @@ async function put(x, y, title) {
     return (await annotations()).at(-1);
 }
 
+async function savedScene() {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save' }).click()]);
+    return JSON.parse(await readFile(await download.path(), 'utf8'));
+}
+
 describe('annotations', () => {
     test('one is put where the point is, edited, and its text is Markdown without scripts', async () => {
         const place = await page.evaluate(() => window.stipple.pick(480, 300));
@@ -136,6 +141,41 @@ describe('annotations', () => {
         await load(scene);
         await page.waitForFunction(() => window.stipple.annotations().length === 2);
         assert.deepEqual(await annotations(), before);
+        assert.deepEqual(complaints, []);
+    });
+
+    test('a tour goes from one to the next, in the order of the tree, past hidden ones, until it is ended', async () => {
+        const { position: seen } = await page.evaluate(() => window.stipple.pick(480, 300));
+        const there = await camera(), beside = seen.map((value, axis) => value + (axis === 0 ? 3 : 0));
+        const list = [
+            { id: 1, title: 'Last', position: seen },
+            { id: 2, title: 'Hidden', position: seen, hidden: true },
+            { id: 3, title: 'First', position: seen, camera: there },
+            { id: 4, parent: 3, title: 'Child', position: beside },
+        ].sort((a, b) => (a.title === 'Last') - (b.title === 'Last'));
+        const path = join(town.folder, 'tour.json');
+        await writeFile(path, JSON.stringify({ ...(await savedScene()), annotations: list }));
+        await page.locator('stipple-scene input[type=file]').setInputFiles(path);
+        await page.waitForFunction(() => window.stipple.annotations().length === 4);
+        const tour = page.getByRole('button', { name: 'Tour from one to the next' });
+        const opened = page.locator('stipple-annotations .title[aria-expanded=true]');
+        const seenTitles = [];
+        await tour.click();
+        for (const title of ['First', 'Child', 'Last']) {
+            await opened.filter({ hasText: title }).waitFor();
+            seenTitles.push(await opened.innerText());
+            if (title === 'First') await page.waitForFunction((to) => JSON.stringify(window.stipple.camera()) === to, JSON.stringify(there));
+            if (title === 'Child')
+                await page.waitForFunction((to) => Math.hypot(...window.stipple.camera().target.map((v, i) => v - to[i])) < 1e-6, beside);
+        }
+        assert.deepEqual(seenTitles, ['First', 'Child', 'Last']);
+        await tour.waitFor(); // it has ended
+
+        await tour.click();
+        await opened.filter({ hasText: 'First' }).waitFor();
+        await page.getByRole('button', { name: 'End the tour' }).click();
+        await page.waitForTimeout(3500);
+        assert.equal(await opened.innerText(), 'First');
         assert.deepEqual(complaints, []);
     });
 });

@@ -11,12 +11,12 @@ import { readPng } from './support/picture.mjs';
 import { makeTown, scratchFolder, serve } from './support/program.mjs';
 import { storedEntries } from './support/zip.mjs';
 
-const size = { width: 800, height: 600 };
+const size = { width: 700, height: 525 };
 let browser, folder, server;
 
 before(async () => {
     folder = await scratchFolder();
-    server = await serve(await makeTown(folder.path, { points: 60_000 }));
+    server = await serve(await makeTown(folder.path, { points: 30_000 }));
     browser = await launch();
 });
 after(async () => {
@@ -56,7 +56,7 @@ describe('pictures', () => {
         await style(page, { sizePixels: 2, shape: 'square' });
         await settle(page);
         const before = await readPixels(page), looks = await page.evaluate(() => window.stipple.style());
-        const [width, height] = [1200, 900];
+        const [width, height] = [1120, 840];
         await wantSize(page, width, height);
         const picture = await pictureOf(page);
         assert.deepEqual([picture.width, picture.height], [width, height]);
@@ -200,8 +200,8 @@ describe('the JSON Schema of scenes', () => {
             clipBoxes: [{ mode: 'highlight', centre: [1, 2, 3], halfSize: [4, 5, 6] }], background: [1, 2, 3],
         });
         await button(page, 'Distance').click();
-        for (const [i, x] of [480, 560].entries()) {
-            await page.locator('canvas').click({ position: { x, y: 320 }, force: true });
+        for (const [i, x] of [430, 500].entries()) {
+            await page.locator('canvas').click({ position: { x, y: 290 }, force: true });
             await page.waitForFunction((n) => window.stipple.measurements().at(-1)?.points.length === n, i + 1);
         }
         await page.keyboard.press('Enter');
