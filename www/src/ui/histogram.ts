@@ -145,6 +145,8 @@ export class HistogramElement extends ModelElement {
     override render(): TemplateResult {
         const domain = this.domain, [from, to] = this.ends, histogram = this.histogram;
         const span = domain[1] - domain[0];
+        // Bins of whole numbers reach half a one beyond them.
+        const [least, most] = this.isWhole ? [Math.ceil(domain[0]), Math.floor(domain[1])] : domain;
         const percent = (value: number): number => (100 * (value - domain[0])) / span;
         const end = (value: number): string => this.texts.number(roundInSpan(value, span));
         return html`<div class="field" data-histogram=${this.label} data-points=${histogram?.points ?? nothing}>
@@ -156,7 +158,7 @@ export class HistogramElement extends ModelElement {
                     .style=${`left: ${percent(from)}%; width: ${Math.max(0, percent(to) - percent(from))}%; ${this.background}`}
                 ></div>
                 ${this.renderHandle(0, percent(from), end(from))} ${this.renderHandle(1, percent(to), end(to))}
-                <div class="ends" aria-hidden="true"><span>${end(domain[0])}</span><span>${end(domain[1])}</span></div>
+                <div class="ends" aria-hidden="true"><span>${end(least)}</span><span>${end(most)}</span></div>
             </div>
             ${histogram && histogram.points === 0 ? html`<p class="note">${this.text('histogram.none')}</p>` : ''}`;
     }
