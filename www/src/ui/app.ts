@@ -143,6 +143,7 @@ export class App extends ModelElement {
                 grid-column: 2 / 4;
                 grid-row: 3;
                 justify-self: end;
+                align-self: end;
                 display: flex;
                 align-items: center;
                 gap: 0.4rem;
