@@ -1,9 +1,9 @@
 #include "client/survey/areas.hpp"
 
-#include "client/survey/accurate_sum.hpp"
 #include "client/survey/lines.hpp"
-#include "client/survey/plan_polygon.hpp"
 #include "client/survey/symmetric_matrix.hpp"
+#include "shared/geometry/accurate_sum.hpp"
+#include "shared/geometry/plan_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #pragma once
 
 #include "client/survey/areas.hpp"
-#include "client/survey/plan_polygon.hpp"
+#include "shared/geometry/plan_polygon.hpp"
 #include "shared/base/result.hpp"
 #include "shared/geometry/polygon.hpp"
 

@@ -8,7 +8,6 @@ namespace stipple {
 
 namespace {
 constexpr int thinnest = 2;
-constexpr double maxScaleRatio = 100;
 // Of the cells, one minimum distance wide, that points lie in, so many get a point. Poisson: about 0.42 on
 // surfaces (measured on airborne and indoor scans), 0.7 and more where points fill a volume.
 double pointsPerCell(Sampling sampling) {
@@ -62,17 +61,6 @@ double typicalSample(const std::vector<CellCounts>& nodes, int density, double p
     return sum > 0 ? squares / sum : 0;
 }
 } // namespace
-
-DistanceMetric distanceMetric(const Grid& grid, const Crs& crs) {
-    DistanceMetric metric;
-    metric.unit = std::max(grid.scale.x, grid.scale.y);
-    for (int axis = 0; axis < 3; ++axis)
-        metric.weights[axis] = grid.scale[axis] / metric.unit;
-    bool angular = crs.known() && crs.unitMeters == 0 && crs.unit.starts_with("deg");
-    if (angular || metric.weights.z > maxScaleRatio || metric.weights.z < 1 / maxScaleRatio)
-        metric.weights.z = 0;
-    return metric;
-}
 
 double Spacing::squaredSteps(int nodeBits) const {
     return std::ldexp(1.0, 2 * nodeBits - density);

@@ -1,23 +1,14 @@
-// How far apart the points of inner nodes are kept, and how that distance is measured.
+// How far apart the points of inner nodes are kept.
 #pragma once
 
 #include "converter/build/subtree.hpp"
 #include "shared/format/cloud_metadata.hpp"
+#include "shared/select/distance_metric.hpp"
 
 #include <array>
 #include <vector>
 
 namespace stipple {
-
-// Distance between two points of the grid: sqrt(Σ (weight × difference in steps)²) × unit world units.
-// Where all scales are equal the weights are 1, so the sum is one of integers; where z is in other units than
-// x and y (degrees and metres), or its scale is a hundredfold different, z has no weight: points are kept
-// apart in plan.
-struct DistanceMetric {
-    Vec3d weights{1, 1, 1};
-    double unit = 1; // world units per step of x and y
-};
-DistanceMetric distanceMetric(const Grid& grid, const Crs& crs);
 
 // The distance at which points of a node of level `level` are chosen (how: chooser.hpp) is `unit` × sqrt(2^(2
 // × nodeBits - density)): a node is 2^(density / 2) such distances wide.

@@ -322,4 +322,9 @@ Result<Crs> crsFromUser(const std::string& text) {
     return crs;
 }
 
+Result<std::string> wktOfEpsg(int code) {
+    STIPPLE_TRY(crs, crsFromUser("EPSG:" + std::to_string(code)));
+    return crs.wkt;
+}
+
 } // namespace stipple

@@ -28,4 +28,7 @@ Result<CrsReading> crsOfLas(const las::Header& header);
 // database knows. invalidArgument if it is none of these.
 Result<Crs> crsFromUser(const std::string& text);
 
+// The WKT of an EPSG code. Errors: those of crsFromUser().
+Result<std::string> wktOfEpsg(int code);
+
 } // namespace stipple

@@ -1,7 +1,6 @@
 #include "converter/export/export_file.hpp"
 
 #include "converter/build/output_check.hpp"
-#include "converter/export/corridor_attributes.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/geojson.hpp"
 #include "converter/export/polygon_crs.hpp"
@@ -9,6 +8,7 @@
 #include "converter/parallel/parallel.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
+#include "shared/select/corridor_attributes.hpp"
 
 #include <filesystem>
 #include <numeric>

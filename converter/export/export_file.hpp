@@ -3,9 +3,9 @@
 
 #include "converter/build/convert.hpp"
 #include "converter/export/format_sink.hpp"
-#include "converter/export/point_filter.hpp"
 #include "converter/export/walk_points.hpp"
 #include "shared/base/result.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <atomic>
 #include <optional>

@@ -1,8 +1,8 @@
 #include "converter/export/filter_text.hpp"
 
-#include "converter/export/cloud_filter.hpp"
-#include "converter/export/region_options.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/cloud_filter.hpp"
+#include "shared/select/region_options.hpp"
 
 #include <algorithm>
 #include <charconv>

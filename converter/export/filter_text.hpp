@@ -1,9 +1,9 @@
 // The parts of a filter as users write them, on a command line or in an address.
 #pragma once
 
-#include "converter/export/point_filter.hpp"
 #include "shared/base/result.hpp"
 #include "shared/points/attribute.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <memory>
 #include <string>

@@ -1,10 +1,11 @@
 #include "converter/export/format_sink.hpp"
 
-#include "converter/export/csv_sink.hpp"
+#include "converter/crs/crs.hpp"
 #include "converter/export/las_summary.hpp"
 #include "converter/export/parallel_chunks.hpp"
 #include "converter/export/ply_sink.hpp"
 #include "shared/base/text.hpp"
+#include "shared/sinks/csv_sink.hpp"
 
 #include <algorithm>
 #include <array>
@@ -66,7 +67,7 @@ Result<FormatPlan> planFormat(ExportFormat format, bool toBeOverwritten, CloudRe
     plan.format = format;
     if (format == ExportFormat::las || format == ExportFormat::laz) {
         STIPPLE_TRY(las, LasPlan::make(input, filter.reach(), input.metadata.pointCount,
-                                       format == ExportFormat::laz));
+                                       format == ExportFormat::laz, wktOfEpsg));
         plan.las = std::move(las);
         plan.las->options.makeChunkWork = parallelChunks(options.threads);
         if (!toBeOverwritten) {

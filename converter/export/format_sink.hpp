@@ -2,9 +2,9 @@
 // goes out, and the sink that writes it.
 #pragma once
 
-#include "converter/export/las_sink.hpp"
 #include "converter/export/walk_points.hpp"
 #include "shared/io/byte_sink.hpp"
+#include "shared/sinks/las_sink.hpp"
 
 #include <cstdint>
 #include <memory>

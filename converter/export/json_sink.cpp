@@ -1,7 +1,7 @@
 #include "converter/export/json_sink.hpp"
 
-#include "converter/export/row_text.hpp"
 #include "shared/base/text.hpp"
+#include "shared/sinks/row_text.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -8,8 +8,8 @@
 // replacement characters.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
 #include "shared/io/byte_sink.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <memory>
 #include <string>

@@ -2,8 +2,8 @@
 // that can't be written twice.
 #pragma once
 
-#include "converter/export/las_sink.hpp"
 #include "converter/export/walk_points.hpp"
+#include "shared/sinks/las_sink.hpp"
 
 namespace stipple {
 

@@ -7,8 +7,8 @@
 // bound holds to the last bit.
 #pragma once
 
-#include "converter/export/cloud_filter.hpp"
 #include "shared/format/cloud_file.hpp"
+#include "shared/select/cloud_filter.hpp"
 
 #include <atomic>
 #include <memory>

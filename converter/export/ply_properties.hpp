@@ -1,7 +1,7 @@
 // How the attributes of a cloud become properties of a PLY vertex.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <string>
 #include <vector>

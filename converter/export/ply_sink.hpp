@@ -11,8 +11,8 @@
 // NAME_high (× 2^32). Comments tell the CRS (as WKT on one line) and what was done to which attribute.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
 #include "shared/io/byte_sink.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <memory>
 #include <optional>

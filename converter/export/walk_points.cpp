@@ -1,8 +1,9 @@
 #include "converter/export/walk_points.hpp"
 
-#include "converter/export/encode_pieces.hpp"
 #include "converter/export/ordered_work.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/point_chooser.hpp"
+#include "shared/sinks/encode_pieces.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -15,26 +16,6 @@ namespace {
 constexpr std::size_t nodesPerThread = 4;
 constexpr std::uint64_t maxPointsWaiting = 2'000'000;
 constexpr std::size_t maxPointsEncoded = 1 << 18; // ahead of writing: text takes many times what points do
-
-// `to` has room for them.
-void gather(const Bytes& from, std::span<const std::uint32_t> rows, std::size_t size, std::uint8_t* to) {
-    auto gatherAs = [&](auto width) {
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            std::memcpy(to + i * width, from.data() + rows[i] * width, width);
-    };
-    switch (size) { // a constant width lets the compiler turn the copy into one move
-    case 1:
-        return gatherAs(std::integral_constant<std::size_t, 1>{});
-    case 2:
-        return gatherAs(std::integral_constant<std::size_t, 2>{});
-    case 4:
-        return gatherAs(std::integral_constant<std::size_t, 4>{});
-    case 8:
-        return gatherAs(std::integral_constant<std::size_t, 8>{});
-    default:
-        return gatherAs(size);
-    }
-}
 
 // A node's points, chosen; encoded unless there are too many.
 struct Chosen {
@@ -49,27 +30,12 @@ struct Chosen {
 
 class Walk {
   public:
-    Walk(CloudReader& reader, const std::string& name, const CloudFilter& filter,
-         const std::vector<int>& attributes, PointSink* sink, const WalkOptions& options)
-        : reader_(reader), name_(name), filter_(filter), sinkAttributes_(attributes), sink_(sink),
-          options_(options), work_(options.threads) {
-        const auto stored = static_cast<int>(schema().attributes.size());
-        for (int attribute : attributes)
-            (attribute < stored ? stored_ : derived_).push_back(attribute);
-        read_ = stored_;
-        for (int attribute : filter.testedAttributes()) {
-            auto place = std::find(read_.begin(), read_.end(), attribute);
-            testedPlaces_.push_back(static_cast<std::size_t>(place - read_.begin()));
-            if (place == read_.end())
-                read_.push_back(attribute);
-        }
-        for (int attribute : stored_)
-            sizes_.push_back(schema().attributes[static_cast<std::size_t>(attribute)].size());
-        sizes_.resize(attributes.size(), sizeof(double));
-    }
+    Walk(CloudReader& reader, const std::string& name, const CloudFilter& filter, PointChooser chooser,
+         PointSink* sink, const WalkOptions& options)
+        : reader_(reader), name_(name), filter_(filter), chooser_(std::move(chooser)), sink_(sink),
+          options_(options), work_(options.threads) {}
 
     Result<WalkCounters> run() {
-        STIPPLE_CHECK(checkDerived());
         auto visited = reader_.visitWanted(
             [&](const NodeEntry& entry) -> Result<bool> {
                 STIPPLE_CHECK(askGate(options_.gate, 0));
@@ -88,18 +54,6 @@ class Walk {
     }
 
   private:
-    const Schema& schema() const { return reader_.metadata().schema; }
-
-    // Those behind the cloud's own are station and offset, and stand last.
-    Status checkDerived() const {
-        const auto stored = static_cast<int>(schema().attributes.size());
-        bool areLast = std::equal(derived_.rbegin(), derived_.rend(), sinkAttributes_.rbegin());
-        bool areKnown = std::all_of(derived_.begin(), derived_.end(), [&](int a) { return a < stored + 2; });
-        if (!derived_.empty() && (!areLast || !areKnown || !filter_.hasCorridor()))
-            return Error{ErrorCode::invalidArgument, "there are no such attributes", name_, ""};
-        return {};
-    }
-
     // Points that are certain to be taken, also from nodes in work.
     void addCertain(std::uint64_t points) {
         certain_ += points;
@@ -140,21 +94,20 @@ class Walk {
         }
         if (entry.pointCount == 0)
             return {};
-        return read(entry, verdict == Verdict::tested ? read_ : stored_, verdict);
+        return read(entry, verdict == Verdict::tested);
     }
 
-    Status read(const NodeEntry& entry, const std::vector<int>& attributes, CloudFilter::Verdict verdict) {
+    Status read(const NodeEntry& entry, bool tested) {
         while (work_.waiting() > 0 &&
                (work_.waiting() >= nodesPerThread * static_cast<std::size_t>(std::max(1, options_.threads)) ||
                 pointsWaiting_ + entry.pointCount > maxPointsWaiting))
             STIPPLE_CHECK(takeOne());
-        STIPPLE_TRY(fetched, reader_.fetchNode(entry, attributes));
+        STIPPLE_TRY(fetched, reader_.fetchNode(entry, chooser_.attributesToRead(tested)));
         counters_.bytesRead += fetched.bytes.size();
         counters_.attributeBytesSkipped += entry.sizeBytes() - fetched.bytes.size();
         pointsWaiting_ += entry.pointCount;
         pointsRead_ += entry.pointCount;
         auto node = std::make_shared<NodeBytes>(std::move(fetched));
-        bool tested = verdict == CloudFilter::Verdict::tested;
         bool mayBeCut = options_.limit > 0 && pointsRead_ > options_.limit;
         work_.submit([this, node, tested, mayBeCut]() -> Result<Chosen> {
             try {
@@ -169,32 +122,17 @@ class Walk {
 
     // On any thread.
     Result<Chosen> choose(const NodeBytes& node, bool tested, bool mayBeCut) const {
-        auto decoded = decodeNode(reader_.metadata(), node, options_.gate);
-        if (!decoded)
-            return decoded.error().at(name_);
-        PointBatch& batch = *decoded;
-        if (batch.size() != node.entry.pointCount)
-            return Error{ErrorCode::corrupt,
-                         cat("node ", node.entry.key.text(), " has ", batch.size(), " points instead of ",
-                             node.entry.pointCount),
-                         name_, ""};
         Chosen chosen;
+        auto wanted = chooser_.choose(node, tested, chosen.dropped, options_.gate);
+        if (!wanted)
+            return wanted.error().at(name_);
+        PointBatch& batch = *wanted;
         chosen.level = node.entry.key.level;
-        chosen.nodePoints = batch.size();
+        chosen.nodePoints = node.entry.pointCount;
         chosen.tested = tested;
-        if (tested) {
-            STIPPLE_TRY(kept, test(node.entry, std::move(batch), chosen.dropped));
-            batch = std::move(kept);
-        }
         chosen.taken = batch.size();
         if (!sink_)
             return chosen;
-        if (!derived_.empty()) {
-            STIPPLE_TRY(places, filter_.placesAlong(node.entry, batch.positions, options_.gate));
-            for (int attribute : derived_)
-                batch.columns.push_back(
-                    places[static_cast<std::size_t>(attribute) - schema().attributes.size()]);
-        }
         if (batch.size() > maxPointsEncoded || mayBeCut) {
             chosen.batch = std::move(batch);
             return chosen;
@@ -206,33 +144,6 @@ class Walk {
         std::size_t count = batch.size();
         STIPPLE_CHECK(encodeInPieces(*sink_, std::move(batch), count, options_.gate, keep));
         return chosen;
-    }
-
-    Result<PointBatch> test(const NodeEntry& entry, PointBatch batch, CloudFilter::Dropped& dropped) const {
-        std::vector<const Bytes*> columns;
-        for (std::size_t place : testedPlaces_)
-            columns.push_back(&batch.columns[place]);
-        STIPPLE_TRY(rows, filter_.select(entry, batch.positions, columns, dropped, options_.gate));
-        if (rows.size() == batch.size()) {
-            batch.columns.resize(stored_.size());
-            return batch;
-        }
-        return pick(batch, rows);
-    }
-
-    Result<PointBatch> pick(const PointBatch& batch, std::span<const std::uint32_t> rows) const {
-        PointBatch picked;
-        picked.positions.reserve(rows.size());
-        for (std::size_t i = 0; i < stored_.size(); ++i)
-            picked.columns.emplace_back(rows.size() * sizes_[i]);
-        STIPPLE_CHECK(inPieces(options_.gate, rows.size(), [&](std::size_t first, std::size_t end) {
-            auto piece = rows.subspan(first, end - first);
-            for (std::uint32_t row : piece)
-                picked.positions.push_back(batch.positions[row]);
-            for (std::size_t i = 0; i < stored_.size(); ++i)
-                gather(batch.columns[i], piece, sizes_[i], picked.columns[i].data() + first * sizes_[i]);
-        }));
-        return picked;
     }
 
     Status takeOne() {
@@ -277,13 +188,9 @@ class Walk {
     CloudReader& reader_;
     const std::string& name_;
     const CloudFilter& filter_;
-    const std::vector<int>& sinkAttributes_;
+    const PointChooser chooser_;
     PointSink* sink_; // null: points are counted only
     const WalkOptions& options_;
-    std::vector<int> stored_, derived_;     // the sink's attributes: the cloud's own, and those computed
-    std::vector<int> read_;                 // those of the cloud, then those only tests need
-    std::vector<std::size_t> testedPlaces_; // of the filter's attributes among them
-    std::vector<std::size_t> sizes_;        // bytes of the sink's attributes
     WalkCounters counters_;
     std::uint64_t pointsWaiting_ = 0, pointsRead_ = 0, pointsDone_ = 0, certain_ = 0;
     bool isEnough_ = false;            // the limit will be reached
@@ -295,7 +202,10 @@ class Walk {
 Result<WalkCounters> walkPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
                                 const std::vector<int>& attributes, PointSink& sink,
                                 const WalkOptions& options) {
-    return Walk(reader, name, filter, attributes, &sink, options).run();
+    auto chooser = PointChooser::make(reader.metadata(), filter, attributes);
+    if (!chooser)
+        return chooser.error().at(name);
+    return Walk(reader, name, filter, std::move(*chooser), &sink, options).run();
 }
 
 Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, const CloudFilter& filter,
@@ -303,7 +213,8 @@ Result<std::uint64_t> countPoints(CloudReader& reader, const std::string& name, 
     const std::uint64_t all = reader.metadata().pointCount;
     if (filter.wantsEverything())
         return options.limit > 0 ? std::min(options.limit, all) : all;
-    auto counted = Walk(reader, name, filter, {}, nullptr, options).run();
+    STIPPLE_TRY(chooser, PointChooser::make(reader.metadata(), filter, {}));
+    auto counted = Walk(reader, name, filter, std::move(chooser), nullptr, options).run();
     if (!counted)
         return counted.error();
     return counted->pointsTaken;

@@ -5,10 +5,10 @@
 // nodes in work take, at most 4 for each thread and, unless one node holds more, about 2 million points.
 #pragma once
 
-#include "converter/export/cloud_filter.hpp"
-#include "converter/export/point_sink.hpp"
 #include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_file.hpp"
+#include "shared/select/cloud_filter.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <array>
 #include <functional>

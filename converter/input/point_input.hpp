@@ -12,6 +12,7 @@
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/geometry/box.hpp"
 #include "shared/geometry/grid.hpp"
+#include "shared/points/gps_time.hpp"
 #include "shared/points/point_batch.hpp"
 
 #include <cstdint>
@@ -36,9 +37,6 @@ struct ReadReport {
 
 // What the GPS times of an input count from (LAS: global encoding, bit 0).
 enum class GpsTimeKind : std::uint8_t { unknown, week, adjustedStandard };
-// What a cloud's GPS Time counts from is the attribute's description.
-inline constexpr const char* standardGpsTimeText = "adjusted standard GPS time";
-inline constexpr const char* weekGpsTimeText = "GPS week time";
 
 struct InputDescription {
     std::string path;  // as given

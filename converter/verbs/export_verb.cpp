@@ -1,13 +1,13 @@
 // stipple export FILE -o OUT
 #include "converter/export/export_file.hpp"
 #include "converter/export/filter_text.hpp"
-#include "converter/export/region_options.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/number_check.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
+#include "shared/select/region_options.hpp"
 
 #include <fmt/format.h>
 #include <memory>

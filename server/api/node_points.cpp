@@ -1,10 +1,11 @@
 #include "server/api/node_points.hpp"
 
-#include "converter/export/encode_pieces.hpp"
+#include "converter/crs/crs.hpp"
 #include "converter/export/format_sink.hpp"
 #include "converter/export/json_sink.hpp"
 #include "server/api/point_formats.hpp"
 #include "shared/base/text.hpp"
+#include "shared/sinks/encode_pieces.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -53,7 +54,8 @@ Result<std::unique_ptr<PointSink>> openSink(const NodeFile& file, const CloudVer
     plan.format = *format;
     plan.pointCount = points.size();
     if (format == ExportFormat::las || format == ExportFormat::laz) {
-        STIPPLE_TRY(las, LasPlan::make(input, boundsOf(points), points.size(), format == ExportFormat::laz));
+        STIPPLE_TRY(las, LasPlan::make(input, boundsOf(points), points.size(), format == ExportFormat::laz,
+                                       wktOfEpsg));
         plan.las = std::move(las);
     }
     STIPPLE_TRY(made, openFormatSink(plan, std::move(bytes), input));

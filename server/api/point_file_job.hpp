@@ -1,12 +1,12 @@
 // The job that writes points of a cloud as a file into an answer.
 #pragma once
 
-#include "converter/export/cloud_filter.hpp"
 #include "server/api/api_resources.hpp"
 #include "server/api/point_formats.hpp"
 #include "server/api/points_request.hpp"
 #include "server/api/validity.hpp"
 #include "server/http/job.hpp"
+#include "shared/select/cloud_filter.hpp"
 
 #include <memory>
 #include <string>

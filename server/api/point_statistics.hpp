@@ -3,7 +3,7 @@
 #pragma once
 
 #include "converter/build/statistics.hpp"
-#include "converter/export/point_sink.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <mutex>
 #include <optional>

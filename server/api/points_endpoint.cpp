@@ -1,10 +1,10 @@
 #include "server/api/points_endpoint.hpp"
 
-#include "converter/export/corridor_attributes.hpp"
 #include "server/api/point_file_job.hpp"
 #include "server/api/points_parameters.hpp"
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/corridor_attributes.hpp"
 
 #include <memory>
 

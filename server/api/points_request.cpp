@@ -1,13 +1,13 @@
 #include "server/api/points_request.hpp"
 
-#include "converter/export/cloud_filter.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/polygon_crs.hpp"
-#include "converter/export/region_options.hpp"
 #include "converter/export/region_text.hpp"
 #include "server/api/points_parameters.hpp"
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/cloud_filter.hpp"
+#include "shared/select/region_options.hpp"
 
 #include <limits>
 

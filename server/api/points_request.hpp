@@ -1,9 +1,9 @@
 // Which points a request asks for.
 #pragma once
 
-#include "converter/export/point_filter.hpp"
 #include "server/api/endpoint.hpp"
 #include "shared/base/result.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <cstdint>
 #include <span>

@@ -1,8 +1,8 @@
 // The query of a request, put to every endpoint, and the key of a node. What the parsers take has to mean
 // something: filters can be made of it, and answer questions without contradicting themselves.
-#include "converter/export/cloud_filter.hpp"
 #include "server/api/api.hpp"
 #include "server/api/points_request.hpp"
+#include "shared/select/cloud_filter.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,9 +1,9 @@
 // Rotated boxes, profiles, values and limits against looking at every point.
-#include "converter/export/corridor_attributes.hpp"
 #include "converter/export/filter_text.hpp"
-#include "converter/export/region_options.hpp"
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
+#include "shared/select/corridor_attributes.hpp"
+#include "shared/select/region_options.hpp"
 #include "tests/unit/converter/export/export_fixture.hpp"
 
 #include <cmath>

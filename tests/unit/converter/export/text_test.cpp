@@ -1,13 +1,15 @@
 // Decimals, and filters as users write them.
-#include "converter/export/decimal.hpp"
 #include "converter/export/filter_text.hpp"
-#include "converter/export/minimum_distance.hpp"
-#include "converter/export/value_ranges.hpp"
+#include "shared/select/minimum_distance.hpp"
+#include "shared/select/value_ranges.hpp"
+#include "shared/sinks/decimal.hpp"
 #include "tests/support/counting_gate.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
 
@@ -40,6 +42,39 @@ TEST_CASE("scaled numbers are the decimals people mean") {
     CHECK(decimal(0.25, 1e6, 3) == "1000000.75");
     CHECK(decimal(-0.5, 1, 1) == "0.5");
     CHECK(decimal(1e-5, -1e-9, 1) == "0.000009999");
+}
+
+TEST_CASE("the portable way to write numbers is the library's, but for neighbours of powers of two") {
+    std::mt19937_64 random(5);
+    int longer = 0;
+    auto compare = [&](auto value) {
+        std::string library, portably;
+        appendShortest(library, value);
+        portable::appendShortest(portably, value);
+        if (library == portably)
+            return;
+        ++longer;
+        INFO(library << " and " << portably);
+        CHECK(portably.size() > library.size());
+        decltype(value) back = sizeof value == 4
+                                   ? static_cast<decltype(value)>(std::strtof(portably.c_str(), nullptr))
+                                   : static_cast<decltype(value)>(std::strtod(portably.c_str(), nullptr));
+        CHECK(back == value);
+    };
+    for (double value : {0.0, -0.0, 1.0, 0.1, 1e22, 1e-5, 123456.0, 1e5, 5e-324, 1.7976931348623157e308,
+                         0x1p60, std::numeric_limits<double>::infinity(), std::nan("")})
+        compare(value);
+    for (int i = 0; i < 200'000; ++i) {
+        compare(std::bit_cast<double>(random()));
+        compare(std::bit_cast<float>(static_cast<std::uint32_t>(random())));
+        compare(static_cast<double>(static_cast<std::int64_t>(random() >> (random() % 64))) / 1000);
+    }
+    for (int exponent = -1000; exponent < 1000; ++exponent) {
+        compare(std::ldexp(1.0, exponent));
+        CHECK(shortestScientific(std::ldexp(1.0, exponent)).find('e') != std::string::npos);
+    }
+    CHECK(longer < 100);
+    CHECK(portable::shortestScientific(0.00125) == "1.25e-03");
 }
 
 TEST_CASE("decimals beyond 64 bits are exact, beyond 128 shortest doubles") {

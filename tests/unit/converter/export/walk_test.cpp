@@ -1,7 +1,7 @@
 // The core without files: what a server does.
-#include "converter/export/csv_sink.hpp"
 #include "converter/export/ply_sink.hpp"
 #include "shared/io/memory_source.hpp"
+#include "shared/sinks/csv_sink.hpp"
 #include "tests/unit/converter/export/export_fixture.hpp"
 
 using namespace stipple;

@@ -1,4 +1,4 @@
-#include "converter/export/minimum_distance.hpp"
+#include "shared/select/minimum_distance.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "converter/export/value_ranges.hpp"
+#include "shared/select/value_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>

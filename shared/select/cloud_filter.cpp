@@ -1,9 +1,9 @@
-#include "converter/export/cloud_filter.hpp"
+#include "shared/select/cloud_filter.hpp"
 
-#include "converter/build/spacing.hpp"
-#include "converter/export/minimum_distance.hpp"
-#include "converter/export/value_ranges.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/distance_metric.hpp"
+#include "shared/select/minimum_distance.hpp"
+#include "shared/select/value_ranges.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -151,7 +151,7 @@ Status CloudFilter::limitRegion() {
     }
     if (filter_.gridBox)
         reach_ = intersection(reach_, *filter_.gridBox);
-    restricts_ = reach_ != bounds || filter_.region || filter_.convex || filter_.corridor;
+    restricts_ = reach_ != bounds || filter_.region || filter_.convex || filter_.prism || filter_.corridor;
     auto reachOnlyInto = [&](BoxD around) {
         bool isEmpty = !(around.min.x <= around.max.x);
         if (!reach_.empty())
@@ -237,6 +237,8 @@ CloudFilter::Overlaps CloudFilter::overlapsOf(const NodeEntry& entry) const {
         overlaps.polygons = filter_.region->overlapOf(box);
     if (filter_.convex)
         overlaps.convex = filter_.convex->overlapOf(box);
+    if (filter_.prism)
+        overlaps.prism = filter_.prism->overlapOf(box);
     if (filter_.corridor)
         overlaps.corridor = filter_.corridor->overlapOf(box);
     return overlaps;
@@ -282,6 +284,7 @@ void CloudFilter::keepInRegion(std::vector<std::uint32_t>& rows, const NodeEntry
     auto world = [&](Vec3i p) { return metadata_->grid.toWorld(p); };
     keep(overlaps.box, [&](Vec3i p) { return reach_.contains(p); });
     keep(overlaps.convex, [&](Vec3i p) { return filter_.convex->contains(world(p)); });
+    keep(overlaps.prism, [&](Vec3i p) { return filter_.prism->contains(world(p)); });
     keep(overlaps.polygons, [&](Vec3i p) {
         Vec3d at = world(p);
         return filter_.region->contains({at.x, at.y});

@@ -9,8 +9,8 @@
 // value" (noData) is an empty field. A CSV file has no place for the CRS.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
 #include "shared/io/byte_sink.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <memory>
 

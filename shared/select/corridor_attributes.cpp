@@ -1,4 +1,4 @@
-#include "converter/export/corridor_attributes.hpp"
+#include "shared/select/corridor_attributes.hpp"
 
 #include "shared/base/text.hpp"
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace stipple::survey {
+namespace stipple {
 
 using PlanPolygon = std::span<const Point2d>;
 
@@ -36,4 +36,4 @@ using Triangle = std::array<std::size_t, 3>; // indices of corners, counter-cloc
 // edges that cross.
 Result<std::vector<Triangle>> triangulate(PlanPolygon corners);
 
-} // namespace stipple::survey
+} // namespace stipple

@@ -1,8 +1,8 @@
 // Ranges of what an attribute's values mean, as ranges of the values that are stored.
 #pragma once
 
-#include "converter/export/point_filter.hpp"
 #include "shared/points/attribute.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "converter/export/decimal.hpp"
+#include "shared/sinks/decimal.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -32,9 +32,8 @@ struct Decimal {
 
 // The shortest decimal of a double: "-1.25e-05" is -125 × 10^-7.
 std::optional<Decimal> shortestDecimal(double value) {
-    char buffer[64];
-    auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::scientific);
-    std::string_view text(buffer, static_cast<std::size_t>(end.ptr - buffer));
+    const std::string shortest = shortestScientific(value);
+    std::string_view text(shortest);
     std::size_t e = text.find('e');
     if (e == std::string_view::npos) // inf, nan
         return std::nullopt;
@@ -138,12 +137,6 @@ void DecimalScale::append(std::string& text, std::int64_t n) const {
     appendDigits(text, static_cast<UInt128>(value < 0 ? -value : value), places_);
 }
 
-void appendShortest(std::string& text, double value) {
-    appendChars(text, value);
-}
-void appendShortest(std::string& text, float value) {
-    appendChars(text, value);
-}
 void appendInteger(std::string& text, std::int64_t value) {
     appendChars(text, value);
 }

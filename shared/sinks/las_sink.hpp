@@ -7,17 +7,21 @@
 // from another offset.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
 #include "shared/io/byte_sink.hpp"
 #include "shared/las/las_header.hpp"
 #include "shared/las/las_writer.hpp"
+#include "shared/sinks/point_sink.hpp"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace stipple {
+
+// The WKT of an EPSG code, for clouds that have no WKT of their own.
+using WktOfCode = std::function<Result<std::string>(int epsg)>;
 
 // How points become records: decided before any of them is read.
 struct LasPlan {
@@ -27,9 +31,10 @@ struct LasPlan {
     std::vector<std::string> warnings;
 
     // `reach`: a box in which all points lie (grid integers). `expectedPoints`: at most so many; 0: unknown.
+    // Without `wktOfCode`, a cloud that names its system by a code alone loses it, with a warning.
     // outOfRange if the reach is wider than 2^32 steps.
     static Result<LasPlan> make(const SinkInput& input, const BoxI& reach, std::uint64_t expectedPoints,
-                                bool compressed);
+                                bool compressed, const WktOfCode& wktOfCode = nullptr);
 };
 
 class LasSink final : public PointSink {

@@ -1,6 +1,6 @@
-#include "converter/export/csv_sink.hpp"
+#include "shared/sinks/csv_sink.hpp"
 
-#include "converter/export/row_text.hpp"
+#include "shared/sinks/row_text.hpp"
 
 namespace stipple {
 
@@ -22,7 +22,7 @@ class CsvSink final : public PointSink {
     Status writeHeader() {
         std::string header;
         for (const std::string& name : rows_.columnNames())
-            header += (header.empty() ? "" : ",") + quoted(name);
+            header.append(header.empty() ? "" : ",").append(quoted(name));
         return append(header + "\n");
     }
 

@@ -1,9 +1,8 @@
-#include "converter/export/las_sink.hpp"
+#include "shared/sinks/las_sink.hpp"
 
-#include "converter/build/scan.hpp"
-#include "converter/crs/crs.hpp"
 #include "shared/base/text.hpp"
 #include "shared/las/record_layout.hpp"
+#include "shared/points/gps_time.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -114,14 +113,16 @@ Schema namedForLas(Schema schema, std::vector<std::string>& warnings) {
     return schema;
 }
 
-std::string wktOf(const Crs& crs, std::vector<std::string>& warnings) {
+std::string wktOf(const Crs& crs, const WktOfCode& wktOfCode, std::vector<std::string>& warnings) {
     if (!crs.wkt.empty() || !crs.epsg)
         return crs.wkt;
-    auto named = crsFromUser(cat("EPSG:", *crs.epsg));
-    if (named)
-        return named->wkt;
+    Result<std::string> wkt =
+        wktOfCode ? wktOfCode(*crs.epsg)
+                  : Error{ErrorCode::unsupported, "no list of systems is at hand", "", "export it natively"};
+    if (wkt.ok())
+        return *wkt;
     warnings.push_back(cat("the cloud's CRS is EPSG:", *crs.epsg,
-                           ", which could not be written as WKT: ", named.error().sentence()));
+                           ", which could not be written as WKT: ", wkt.error().sentence()));
     return "";
 }
 
@@ -133,7 +134,7 @@ bool hasStandardGpsTime(const Schema& schema) {
 } // namespace
 
 Result<LasPlan> LasPlan::make(const SinkInput& input, const BoxI& reach, std::uint64_t expectedPoints,
-                              bool compressed) {
+                              bool compressed, const WktOfCode& wktOfCode) {
     LasPlan plan;
     STIPPLE_TRY(shift, shiftInto32Bits(reach));
     plan.shift = shift;
@@ -146,7 +147,7 @@ Result<LasPlan> LasPlan::make(const SinkInput& input, const BoxI& reach, std::ui
     options.pointFormat = choosePointFormat(input, options.schema);
     options.expectedPoints = expectedPoints;
     options.compressed = compressed;
-    options.wkt = wktOf(input.metadata.crs, plan.warnings);
+    options.wkt = wktOf(input.metadata.crs, wktOfCode, plan.warnings);
     options.globalEncoding = hasStandardGpsTime(options.schema) ? 1 : 0;
     return plan;
 }

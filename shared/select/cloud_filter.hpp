@@ -8,12 +8,12 @@
 // Thread: any number, once made.
 #pragma once
 
-#include "converter/export/point_filter.hpp"
 #include "shared/base/result.hpp"
 #include "shared/base/work_gate.hpp"
 #include "shared/format/cloud_metadata.hpp"
 #include "shared/format/node_entry.hpp"
 #include "shared/points/point_batch.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,8 +76,8 @@ class CloudFilter {
     // How the parts of the region lie to a node's points: which of them have to be asked about each.
     struct Overlaps {
         Overlap box = Overlap::whole, polygons = Overlap::whole, convex = Overlap::whole,
-                corridor = Overlap::whole;
-        Overlap all() const { return std::min({box, polygons, convex, corridor}); }
+                prism = Overlap::whole, corridor = Overlap::whole;
+        Overlap all() const { return std::min({box, polygons, convex, prism, corridor}); }
     };
     Overlaps overlapsOf(const NodeEntry& entry) const;
     BoxI cubeOf(const NodeKey& key) const;

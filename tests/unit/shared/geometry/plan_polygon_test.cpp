@@ -1,4 +1,4 @@
-#include "client/survey/plan_polygon.hpp"
+#include "shared/geometry/plan_polygon.hpp"
 #include "tests/unit/client/survey/random_points.hpp"
 
 #include <catch2/catch.hpp>
@@ -7,7 +7,6 @@
 #include <numbers>
 
 using namespace stipple;
-using namespace stipple::survey;
 using stipple::test::RandomPlaces;
 
 namespace {

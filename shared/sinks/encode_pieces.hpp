@@ -1,8 +1,8 @@
 // A sink's encoding in pieces, between which it can be broken off.
 #pragma once
 
-#include "converter/export/point_sink.hpp"
 #include "shared/base/work_gate.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <utility>
 

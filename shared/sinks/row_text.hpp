@@ -1,8 +1,8 @@
 // Points as text, for the formats that are: exact decimals of coordinates and attribute values.
 #pragma once
 
-#include "converter/export/decimal.hpp"
-#include "converter/export/point_sink.hpp"
+#include "shared/sinks/decimal.hpp"
+#include "shared/sinks/point_sink.hpp"
 
 #include <string>
 #include <vector>

@@ -2,6 +2,8 @@
 // shortest text that reads back to the same value.
 #pragma once
 
+#include "shared/sinks/shortest_number.hpp"
+
 #include <cstdint>
 #include <string>
 
@@ -29,8 +31,6 @@ class DecimalScale {
     bool narrow_ = false;
 };
 
-void appendShortest(std::string& text, double value); // "nan", "inf", "-inf" where it is no number
-void appendShortest(std::string& text, float value);
 void appendInteger(std::string& text, std::int64_t value);
 void appendInteger(std::string& text, std::uint64_t value);
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace stipple::survey {
+namespace stipple {
 
 class AccurateSum {
   public:
@@ -26,4 +26,4 @@ class AccurateSum {
     double sum_ = 0, lost_ = 0;
 };
 
-} // namespace stipple::survey
+} // namespace stipple

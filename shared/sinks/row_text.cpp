@@ -1,4 +1,4 @@
-#include "converter/export/row_text.hpp"
+#include "shared/sinks/row_text.hpp"
 
 #include "shared/base/text.hpp"
 

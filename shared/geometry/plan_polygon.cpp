@@ -1,13 +1,13 @@
-#include "client/survey/plan_polygon.hpp"
+#include "shared/geometry/plan_polygon.hpp"
 
-#include "client/survey/accurate_sum.hpp"
+#include "shared/geometry/accurate_sum.hpp"
 #include "shared/geometry/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace stipple::survey {
+namespace stipple {
 
 namespace {
 
@@ -144,4 +144,4 @@ Result<std::vector<Triangle>> triangulate(PlanPolygon corners) {
     return triangles;
 }
 
-} // namespace stipple::survey
+} // namespace stipple

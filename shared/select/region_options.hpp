@@ -1,8 +1,8 @@
 // Regions as users state them: numbers on a command line or in an address, made parts of a filter.
 #pragma once
 
-#include "converter/export/point_filter.hpp"
 #include "shared/base/result.hpp"
+#include "shared/select/point_filter.hpp"
 
 #include <memory>
 #include <span>

@@ -1,4 +1,4 @@
-#include "converter/export/region_options.hpp"
+#include "shared/select/region_options.hpp"
 
 #include "shared/geometry/oriented_box.hpp"
 

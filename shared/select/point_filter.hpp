@@ -5,6 +5,7 @@
 #include "shared/geometry/corridor.hpp"
 #include "shared/geometry/half_space.hpp"
 #include "shared/geometry/polygon.hpp"
+#include "shared/geometry/screen_prism.hpp"
 
 #include <memory>
 #include <optional>
@@ -34,6 +35,8 @@ struct PointFilter {
     std::shared_ptr<const PolygonRegion> region;
     // A rotated box, world units (shared/geometry/oriented_box.hpp).
     std::shared_ptr<const ConvexRegion> convex;
+    // What shows inside a polygon on the screen, world units.
+    std::shared_ptr<const ScreenPrism> prism;
     // What lies along a line, world units; its points have a station and an offset (corridor_attributes.hpp).
     std::shared_ptr<const Corridor> corridor;
     std::vector<AttributeCondition> conditions;
