@@ -4,6 +4,7 @@
 #include "client/survey/circles.hpp"
 #include "client/survey/exact_points.hpp"
 #include "client/survey/lines.hpp"
+#include "client/survey/picked_points.hpp"
 #include "client/survey/uncertainty.hpp"
 #include "shared/base/text.hpp"
 
@@ -22,8 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double maxSteps = 9007199254740992.0; // 2^53
-constexpr std::size_t maxPoints = 10000;
+constexpr std::size_t maxPoints = maxPickedPoints;
 
 // What is measured, ready for the functions: points as seen from the first.
 struct Request {
@@ -39,31 +39,6 @@ Error wrong(std::string what) {
     return Error{ErrorCode::invalidArgument, std::move(what), "measurement", ""};
 }
 
-Result<Vec3d> vectorFrom(const json& object, const char* name, std::size_t point) {
-    auto at = object.find(name);
-    if (at == object.end() || !at->is_array() || at->size() != 3 ||
-        !std::all_of(at->begin(), at->end(), [](const json& number) {
-            return number.is_number() && std::isfinite(number.get<double>());
-        }))
-        return wrong(cat("points[", point, "].", name, " must be three numbers [x, y, z]"));
-    return Vec3d{(*at)[0].get<double>(), (*at)[1].get<double>(), (*at)[2].get<double>()};
-}
-
-Result<GridPoint> gridPointFrom(const json& object, std::size_t index) {
-    STIPPLE_TRY(steps, vectorFrom(object, "integers", index));
-    STIPPLE_TRY(scale, vectorFrom(object, "scale", index));
-    STIPPLE_TRY(offset, vectorFrom(object, "offset", index));
-    GridPoint point{{}, {scale, offset}};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (steps[axis] != std::floor(steps[axis]) || std::abs(steps[axis]) > maxSteps)
-            return wrong(cat("points[", index, "].integers must be whole numbers of at most 2^53"));
-        if (!(scale[axis] > 0))
-            return wrong(cat("points[", index, "].scale must be above 0"));
-        point.steps[axis] = static_cast<std::int64_t>(steps[axis]);
-    }
-    return point;
-}
-
 Result<Request> requestFrom(const json& object) {
     Request request;
     if (!object.is_object() || !object.contains("kind") || !object["kind"].is_string())
@@ -73,20 +48,9 @@ Result<Request> requestFrom(const json& object) {
         if (object.contains(flag) && !object[flag].is_boolean())
             return wrong(cat(flag, " must be true or false"));
     request.closed = object.value("closed", false);
-    auto list = object.find("points");
-    if (list == object.end() || !list->is_array() || list->empty() || list->size() > maxPoints)
-        return wrong(cat("points must be a list of 1 to ", maxPoints, " points"));
-    std::vector<GridPoint> points;
-    for (const json& item : *list) {
-        if (!item.is_object())
-            return wrong(cat("points[", points.size(), "] must be an object"));
-        STIPPLE_TRY(point, gridPointFrom(item, points.size()));
-        auto spacing = item.find("spacing");
-        if (spacing != item.end() && !(spacing->is_number() && spacing->get<double>() >= 0))
-            return wrong(cat("points[", points.size(), "].spacing must be a number from 0 on"));
-        request.deviations.push_back(spacing == item.end() ? 0 : deviationOfSpacing(spacing->get<double>()));
-        points.push_back(point);
-    }
+    STIPPLE_TRY(picked, pickedPointsFrom(object));
+    const std::vector<GridPoint>& points = picked.points;
+    request.deviations = picked.deviations;
     request.points = localPoints(points);
     request.origin = points.front().grid.toWorld(points.front().steps);
     if (object.value("geocentric", false))

@@ -46,12 +46,14 @@ Result<Base> Base::rim(std::span<const Vec3d> corners, const Directions& directi
         facet.a = plan[t[0]];
         facet.b = plan[t[1]];
         facet.c = plan[t[2]];
+        facet.corners = t;
         base.facets_.push_back(facet);
     }
+    base.supports_ = corners.size();
     return base;
 }
 
-double Base::heightAt(Point2d plan) const {
+const Base::Facet& Base::facetAt(Point2d plan) const {
     const Facet* nearest = &facets_.front();
     double least = std::numeric_limits<double>::infinity();
     for (const Facet& facet : facets_) {
@@ -66,7 +68,25 @@ double Base::heightAt(Point2d plan) const {
             nearest = &facet;
         }
     }
-    return nearest->atZero + nearest->slopeX * plan.x + nearest->slopeY * plan.y;
+    return *nearest;
+}
+
+double Base::heightAt(Point2d plan) const {
+    const Facet& facet = facetAt(plan);
+    return facet.atZero + facet.slopeX * plan.x + facet.slopeY * plan.y;
+}
+
+// Barycentric coordinates.
+std::vector<Base::Share> Base::sharesAt(Point2d plan) const {
+    if (supports_ == 1)
+        return {{0, 1}};
+    const Facet& facet = facetAt(plan);
+    auto twice = [](Point2d a, Point2d b, Point2d c) {
+        return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+    };
+    double whole = twice(facet.a, facet.b, facet.c);
+    double first = twice(plan, facet.b, facet.c) / whole, second = twice(facet.a, plan, facet.c) / whole;
+    return {{facet.corners[0], first}, {facet.corners[1], second}, {facet.corners[2], 1 - first - second}};
 }
 
 CutFillMeasure::CutFillMeasure(std::vector<Point2d> plan, Base base, const Directions& directions)
@@ -173,19 +193,30 @@ Result<CutFill> CutFillMeasure::result() const {
     std::vector<double> heights = filledHeights();
     CutFill total;
     total.points = points_;
-    double variance = 0;
+    double cutVariance = 0, fillVariance = 0;
+    total.cutShares.resize(base_.supports());
+    total.fillShares.resize(base_.supports());
     for (std::size_t row = 0; row < rows_; ++row)
         for (std::size_t column = 0; column < columns_; ++column) {
             std::size_t i = row * columns_ + column;
             double area = areaInside(column, row);
             total.area += area;
-            (heights[i] > 0 ? total.cut : total.fill) += area * std::abs(heights[i]);
+            if (area == 0)
+                continue;
+            bool isCut = heights[i] > 0;
+            (isCut ? total.cut : total.fill) += area * std::abs(heights[i]);
+            Point2d low = cornerOf(column, row);
+            for (Base::Share share : base_.sharesAt({low.x + cell_ / 2, low.y + cell_ / 2}))
+                (isCut ? total.cutShares : total.fillShares)[share.support] += area * share.share;
             if (const Cell& cell = cells_[i]; cell.count == 0)
                 total.areaWithoutPoints += area;
             else if (cell.count > 1)
-                variance += area * area * cell.squares / (cell.count - 1.0) / cell.count;
+                (isCut ? cutVariance : fillVariance) +=
+                    area * area * cell.squares / (cell.count - 1.0) / cell.count;
         }
-    total.deviation = std::sqrt(variance);
+    total.cutDeviation = std::sqrt(cutVariance);
+    total.fillDeviation = std::sqrt(fillVariance);
+    total.deviation = std::sqrt(cutVariance + fillVariance);
     return total;
 }
 

@@ -9,8 +9,8 @@
 #pragma once
 
 #include "client/survey/areas.hpp"
-#include "shared/geometry/plan_polygon.hpp"
 #include "shared/base/result.hpp"
+#include "shared/geometry/plan_polygon.hpp"
 #include "shared/geometry/polygon.hpp"
 
 #include <cstdint>
@@ -31,12 +31,25 @@ class Base {
     // Above the first point of the cloud's local coordinates; beyond the rim's triangles as the nearest one.
     double heightAt(Point2d plan) const;
 
+    // By how much the base rises there if one of its supports does by one: a rim's corners, of a plane its
+    // whole. The shares of a place add up to 1.
+    struct Share {
+        std::size_t support = 0;
+        double share = 1;
+    };
+    std::vector<Share> sharesAt(Point2d plan) const;
+    std::size_t supports() const { return supports_; }
+
   private:
     struct Facet { // height = atZero + slopeX × x + slopeY × y
         Point2d a, b, c;
         double atZero = 0, slopeX = 0, slopeY = 0;
+        Triangle corners{};
     };
+    const Facet& facetAt(Point2d plan) const;
+
     std::vector<Facet> facets_; // one without corners: a plane
+    std::size_t supports_ = 1;
 };
 
 struct CutFill {
@@ -45,7 +58,10 @@ struct CutFill {
     double area = 0;              // of the polygon, in plan
     double areaWithoutPoints = 0; // of it: in cells that have none
     double deviation = 0;         // standard deviation of cut - fill, from how heights scatter within cells
-    std::uint64_t points = 0;     // inside the polygon
+    double cutDeviation = 0, fillDeviation = 0; // the same of each
+    // By how much cut falls and fill rises if a support of the base rises by one (Base::sharesAt): areas.
+    std::vector<double> cutShares, fillShares;
+    std::uint64_t points = 0; // inside the polygon
     double net() const { return cut - fill; }
 };
 

@@ -75,6 +75,27 @@ TEST_CASE("a rim that is not flat is spanned by triangles") {
     CHECK(tent.cut == 0);
 }
 
+TEST_CASE("what a support of the base does to cut and fill is told") {
+    // Half of it above the base, half below; a base one higher anywhere by one corner's share.
+    std::vector<Vec3d> corners{{0, 0, 1}, {20, 0, 0}, {20, 20, 2}, {0, 20, 0}};
+    auto ground = [](double x, double) { return x < 10 ? 10.0 : -10.0; };
+    CutFill before = measured(corners, *Base::rim(corners), 0.5, 50000, ground);
+    double shares = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        std::vector<Vec3d> raised = corners;
+        raised[i].z += 1;
+        CutFill after = measured(raised, *Base::rim(raised), 0.5, 50000, ground);
+        CHECK(before.cut - after.cut == Approx(before.cutShares[i]).margin(0.5));
+        CHECK(after.fill - before.fill == Approx(before.fillShares[i]).margin(0.5));
+        shares += before.cutShares[i] + before.fillShares[i];
+    }
+    CHECK(shares == Approx(before.area).epsilon(1e-9));
+    CHECK(std::hypot(before.cutDeviation, before.fillDeviation) == Approx(before.deviation));
+    CutFill level = measured(corners, *Base::plane({{0, 0, 0}, {0, 0, 1}}), 0.5, 50000, ground);
+    REQUIRE(level.cutShares.size() == 1);
+    CHECK(level.cutShares[0] + level.fillShares[0] == Approx(level.area).epsilon(1e-9));
+}
+
 TEST_CASE("polygons of any shape are cut at their edges, and holes in the scan are filled and said") {
     std::vector<Vec3d> arrow{{1, 1, 0}, {19, 2, 0}, {10, 6, 0}, {15, 19, 0}};
     double area = measureArea(arrow).horizontal;
