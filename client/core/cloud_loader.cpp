@@ -48,6 +48,9 @@ void CloudLoader::fail(const Error& error) {
     fetched = {};
     hierarchy = {};
     residency.clear();
+    lostNodes.clear();
+    lostChunks.clear();
+    state.lastLoss.reset();
 }
 
 void CloudLoader::reset() {
@@ -55,6 +58,7 @@ void CloudLoader::reset() {
     state.error = {};
     state.metadata = nullptr;
     state.interrupted.reset();
+    state.lastLoss.reset();
     fetched = {};
     openingNeeds.reset();
     opened = {};
@@ -67,21 +71,25 @@ void CloudLoader::reset() {
     needs = {};
 }
 
-void CloudLoader::loseNode(std::uint32_t node, bool mayPass) {
-    residency[node].failed = true;
-    if (mayPass)
+void CloudLoader::loseNode(std::uint32_t node, const Error& why) {
+    state.lastLoss = placed(why);
+    if (!std::exchange(residency[node].failed, true))
         lostNodes.push_back(node);
 }
 
-void CloudLoader::loseChunk(std::uint32_t parent, bool mayPass) {
+void CloudLoader::loseChunk(std::uint32_t parent, const Error& why) {
+    state.lastLoss = placed(why);
     hierarchy.markChildrenFailed(parent);
-    if (mayPass)
-        lostChunks.push_back(parent);
+    lostChunks.push_back(parent);
 }
 
 void CloudLoader::takeUpLost() {
-    for (std::uint32_t node : std::exchange(lostNodes, {}))
+    state.lastLoss.reset();
+    for (std::uint32_t node : std::exchange(lostNodes, {})) {
         residency[node].failed = false;
+        if (auto failures = decodeFailures.find(node); failures != decodeFailures.end())
+            failures->second = 1; // so that it is fetched anew
+    }
     for (std::uint32_t parent : std::exchange(lostChunks, {}))
         hierarchy.markChildrenMissing(parent);
 }

@@ -33,7 +33,7 @@ struct CloudLoader {
     std::vector<NodeResidency> residency;                  // parallel to hierarchy's nodes
     std::unordered_map<std::uint32_t, int> decodeFailures; // by node
     std::set<std::uint32_t> damagedChunks;                 // by node above; fetched once more
-    std::vector<std::uint32_t> lostNodes, lostChunks;      // given up, but another time they may come
+    std::vector<std::uint32_t> lostNodes, lostChunks;      // given up until retry(); chunks by node above
     AttributeNeeds needs;                                  // of the style
     AttributeNeeds watched;          // of whoever counts what is in view; nodes are drawn without them
     const KeptBytes* kept = nullptr; // of the session
@@ -51,9 +51,9 @@ struct CloudLoader {
     bool mayReload(std::chrono::steady_clock::time_point now) const {
         return ready() && (!reloadedAt || now - *reloadedAt > std::chrono::minutes(10));
     }
-    void loseNode(std::uint32_t node, bool mayPass);
-    void loseChunk(std::uint32_t parent, bool mayPass);
-    void takeUpLost(); // what may pass is wanted again
+    void loseNode(std::uint32_t node, const Error& why);
+    void loseChunk(std::uint32_t parent, const Error& why);
+    void takeUpLost(); // all of it is wanted again
     // The error with the source's name in its place.
     Error placed(const Error& error) const;
     // Takes in a chunk with the children of node `parent`. After an error all is as it was.

@@ -320,6 +320,19 @@ json toJson(const CloudState& cloud) {
         value["error"] = toJson(cloud.error);
     if (cloud.interrupted)
         value["interrupted"] = toJson(*cloud.interrupted);
+    if (cloud.retrying) {
+        value["retrying"] = toJson(*cloud.retrying);
+        value["retrySeconds"] = cloud.retrySeconds;
+    }
+    if (cloud.lastLoss) {
+        value["missing"] = {{"nodes", cloud.nodesMissing},
+                            {"chunks", cloud.chunksMissing},
+                            {"last", toJson(*cloud.lastLoss)}};
+    }
+    if (cloud.reloads > 0)
+        value["reloads"] = cloud.reloads;
+    if (!cloud.caution.empty())
+        value["caution"] = cloud.caution;
     if (cloud.metadata) {
         json attributes = json::array();
         for (const Attribute& attribute : cloud.metadata->schema.attributes)

@@ -43,8 +43,9 @@ nlohmann::json toJson(const FrameCounters& counters);
 nlohmann::json toJson(const SessionCounters& counters);
 nlohmann::json toJson(const Error& error);
 nlohmann::json toJson(const BoxD& box); // {"min": […], "max": […]}, or null if empty
-// Name, stage, visibility, the error if it failed or is interrupted, and once ready: point count, world
-// bounds, CRS, attribute names, classes (value, name, colour, number of points).
+// Name, stage, visibility, what went wrong (the fields of CloudState under their own names; "missing": what
+// was given up), and once ready: point count, world bounds, CRS, attribute names, classes (value, name,
+// colour, number of points).
 nlohmann::json toJson(const CloudState& cloud);
 // {"integers": [x, y, z], "position": [x, y, z], "values": {"Intensity": 12, …}}: values as stored × scale +
 // offset, whole numbers as such; several components as an array.

@@ -21,9 +21,25 @@ struct LoadQueue::Request {
 
 namespace {
 
-// A disk or network may recover; a file that ends early, contradicts itself or changed will not.
-bool mayPass(ErrorCode code) {
-    return code == ErrorCode::ioFailed || code == ErrorCode::networkFailed || code == ErrorCode::cancelled;
+// How often an item is asked for. A disk or network may recover; an answer that ends early may have been cut
+// on its way; a file that contradicts itself or changed will not.
+int mostAttempts(ErrorCode code) {
+    switch (code) {
+    case ErrorCode::networkFailed:
+        return LoadQueue::maxNetworkAttempts;
+    case ErrorCode::ioFailed:
+    case ErrorCode::cancelled:
+        return LoadQueue::maxAttempts;
+    case ErrorCode::truncated:
+        return LoadQueue::maxCutAttempts;
+    default:
+        return 1;
+    }
+}
+
+// Of a source, whatever it is asked for: who asks again gets the same answer, until somebody does something.
+bool isRefusal(ErrorCode code) {
+    return code == ErrorCode::accessDenied || code == ErrorCode::unsupported;
 }
 
 ByteRange unionOf(ByteRange a, ByteRange b) {
@@ -197,10 +213,11 @@ std::uint64_t LoadQueue::partBytes() const {
 
 void LoadQueue::lookAtProgress(Clock::time_point now) {
     for (auto& [number, request] : requests_)
-        if (!request.cancelled && !request.hasBegun &&
-            sources_.at(request.cloud).bytes->progress(request.id).hasBegun) {
-            request.hasBegun = true;
-            estimate_.begun(request.sent, now);
+        if (!request.cancelled && !request.hasBegun) {
+            ByteSource::Progress progress = sources_.at(request.cloud).bytes->progress(request.id);
+            request.hasBegun = progress.hasBegun;
+            if (progress.hasBegun)
+                estimate_.begun(request.sent, progress.begunAt.value_or(now));
         }
 }
 
@@ -330,10 +347,10 @@ void LoadQueue::noteArrival(const Request& request, const Arrival& arrival, Cloc
 
 // Requests that fail together, before the pause that the first of them caused is over, are one failure.
 void LoadQueue::noteFailure(Source& source, const Error& error, Clock::time_point now) {
-    if (error.code != ErrorCode::networkFailed && error.code != ErrorCode::accessDenied)
+    if (error.code != ErrorCode::networkFailed && !isRefusal(error.code))
         return;
     source.last = error;
-    source.isStopped |= error.code == ErrorCode::accessDenied; // asking again would not help
+    source.isStopped |= isRefusal(error.code);
     bool isPausing = source.failures > 0 && now < source.notBefore;
     if (!isPausing)
         ++source.failures;
@@ -400,8 +417,7 @@ void LoadQueue::fail(LoadItem item, const Error& error, Clock::time_point now, s
     failure.last = error;
     auto source = sources_.find(item.key.cloud);
     bool isOver = source == sources_.end() || source->second.isStopped;
-    int most = error.code == ErrorCode::networkFailed ? maxNetworkAttempts : maxAttempts;
-    if (mayPass(error.code) && failure.attempts < most && !isOver) {
+    if (failure.attempts < mostAttempts(error.code) && !isOver) {
         failure.notBefore = now + pauseAfter(failure.attempts);
         waiting_.insert(waiting_.begin(), std::move(item));
         return;
@@ -415,20 +431,26 @@ bool LoadQueue::awaits(std::uint32_t cloud) const {
                        [&](const auto& request) { return request.second.cloud == cloud; });
 }
 
-std::optional<Error> LoadQueue::passingFailure() const {
+std::optional<Error> LoadQueue::passingFailure(std::optional<std::uint32_t> cloud) const {
+    auto failureOf = [&](const LoadKey& key) -> const Failure* {
+        auto failure = failures_.find(key);
+        bool isMeant = failure != failures_.end() && key.cloud == cloud.value_or(key.cloud);
+        return isMeant ? &failure->second : nullptr;
+    };
     for (const LoadItem& item : waiting_)
-        if (auto failure = failures_.find(item.key); failure != failures_.end())
-            return failure->second.last;
+        if (const Failure* failure = failureOf(item.key))
+            return failure->last;
     for (const auto& [key, request] : travelling_)
-        if (auto failure = failures_.find(key); failure != failures_.end())
-            return failure->second.last;
+        if (const Failure* failure = failureOf(key))
+            return failure->last;
     return std::nullopt;
 }
 
-LoadQueue::Clock::time_point LoadQueue::nextRetry() const {
+LoadQueue::Clock::time_point LoadQueue::nextRetry(std::optional<std::uint32_t> cloud) const {
     auto earliest = Clock::time_point::max();
     for (const LoadItem& item : waiting_)
-        if (failures_.contains(item.key) || sources_.at(item.key.cloud).failures > 0)
+        if (item.key.cloud == cloud.value_or(item.key.cloud) &&
+            (failures_.contains(item.key) || sources_.at(item.key.cloud).failures > 0))
             earliest = std::min(earliest, notBefore(item));
     return earliest;
 }

@@ -61,6 +61,7 @@ class LoadQueue {
     using Clock = std::chrono::steady_clock;
     static constexpr int maxAttempts = 4;
     static constexpr int maxNetworkAttempts = 8; // of an item, while others of its source come
+    static constexpr int maxCutAttempts = 2;     // of one whose answer ends too early
     // Before attempt 2, 3 and 4: 250 ms, 1 s, 4 s, each up to a quarter more or less, so that clients who
     // failed together don't come back together.
     Clock::duration pauseAfter(int attempts) const;
@@ -91,10 +92,11 @@ class LoadQueue {
     int requestsInFlight() const { return requestsInFlight_; }
     bool idle() const { return waiting_.empty() && requests_.empty() && arrivals_.empty(); }
     bool awaits(std::uint32_t cloud) const; // a request to that source is on its way
-    // The earliest time at which an item that waits after a failure may be asked for; max() if none does.
-    Clock::time_point nextRetry() const;
+    // The earliest time at which an item that waits after a failure may be asked for, of one source or of
+    // all; max() if none does.
+    Clock::time_point nextRetry(std::optional<std::uint32_t> cloud = std::nullopt) const;
     // Why what waits for another attempt, or is on its way by one, failed before; nothing if nothing does.
-    std::optional<Error> passingFailure() const;
+    std::optional<Error> passingFailure(std::optional<std::uint32_t> cloud = std::nullopt) const;
     const TransferEstimate& network() const { return estimate_; }
 
     // Why nothing more is asked of a source; nothing if it isn't stopped.

@@ -117,7 +117,7 @@ bool NodeDecoding::takeFailure(CloudLoader& cloud, const Answer& answer, CachedN
     int failures = ++cloud.decodeFailures[answer.key.node];
     if (failures < maxDecodeAttempts)
         return false;
-    cloud.residency[answer.key.node].failed = true;
+    cloud.loseNode(answer.key.node, answer.node.error());
     return true;
 }
 

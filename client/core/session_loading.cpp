@@ -12,15 +12,9 @@ constexpr std::chrono::milliseconds waitSlice{2};
 
 constexpr std::uint64_t keptBytes = 32 << 20; // of gaps
 
-// A file that is another one now: nothing of its cloud can be used any more. A server without ranges: nothing
-// more of it can be had.
+// A file that is another one now: nothing of its cloud can be used any more.
 bool isFatal(const Error& error) {
-    return error.code == ErrorCode::changed || error.code == ErrorCode::unsupported;
-}
-
-bool mayPass(const Error& error) {
-    return error.code == ErrorCode::networkFailed || error.code == ErrorCode::accessDenied ||
-           error.code == ErrorCode::ioFailed;
+    return error.code == ErrorCode::changed;
 }
 
 std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
@@ -52,17 +46,32 @@ CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::strin
     return id;
 }
 
-void SessionLoading::retry() {
+void SessionLoading::retry(std::optional<CloudId> only) {
     for (auto& [id, cloud] : clouds_) {
+        if (only && *only != id)
+            continue;
         queue_.retry(id);
         cloud.state.interrupted.reset();
         cloud.takeUpLost();
-        bool mayOpen =
-            cloud.state.stage == CloudStage::failed && (cloud.state.error.code == ErrorCode::networkFailed ||
-                                                        cloud.state.error.code == ErrorCode::accessDenied);
-        if (mayOpen)
-            open(cloud);
+        if (cloud.state.stage != CloudStage::failed)
+            continue;
+        cloud.source->forgetVersion(); // whatever is there by now; a source of one version opens that again
+        open(cloud);
     }
+}
+
+CloudState SessionLoading::stateOf(const CloudLoader& cloud) const {
+    CloudState state = cloud.state;
+    if (auto failure = queue_.passingFailure(state.id)) {
+        state.retrying = cloud.placed(*failure);
+        auto next = queue_.nextRetry(state.id);
+        if (next != LoadQueue::Clock::time_point::max()) // else it is on its way
+            state.retrySeconds = std::max(0.0, std::chrono::duration<double>(next - now_()).count());
+    }
+    state.nodesMissing = cloud.lostNodes.size();
+    state.chunksMissing = cloud.lostChunks.size();
+    state.caution = cloud.source->caution();
+    return state;
 }
 
 // From the beginning; nothing is held or on its way.
@@ -229,22 +238,16 @@ void SessionLoading::takeChunk(CloudLoader& cloud, std::uint32_t node, const Byt
     if (added.ok()) {
         ++counters_.chunksLoaded;
     } else if (!cloud.damagedChunks.insert(node).second) {
-        cloud.hierarchy.markChildrenFailed(node);
-        remember(cloud.placed(added.error().at("chunk below node " + keyText(cloud, node))));
+        cloud.loseChunk(node, added.error().at("chunk below node " + keyText(cloud, node)));
+        remember(*cloud.state.lastLoss);
     }
 }
 
 void SessionLoading::takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error,
                                  Arrivals& arrivals) {
     auto node = static_cast<std::uint32_t>(item.key.id);
-    if (error.code == ErrorCode::changed && cloud.mayReload(now_()) && cloud.source->forgetVersion()) {
-        release(cloud.state.id);
-        arrivals.failed.push_back(cloud.state.id);
-        open(cloud);
-        cloud.reloadedAt = now_();
-        ++counters_.cloudsReloaded;
-        return;
-    }
+    if (error.code == ErrorCode::changed && cloud.mayReload(now_()) && cloud.source->forgetVersion())
+        return reload(cloud, arrivals);
     if (isFatal(error) || item.key.kind == LoadKind::opening) {
         cloud.fail(error);
         failed(cloud, arrivals);
@@ -257,10 +260,19 @@ void SessionLoading::takeFailure(CloudLoader& cloud, const LoadItem& item, const
         return;
     }
     if (item.key.kind == LoadKind::chunk)
-        cloud.loseChunk(node, mayPass(error));
+        cloud.loseChunk(node, error.at("node " + keyText(cloud, node)));
     else
-        cloud.loseNode(node, mayPass(error));
-    remember(cloud.placed(error.at("node " + keyText(cloud, node))));
+        cloud.loseNode(node, error.at("node " + keyText(cloud, node)));
+    remember(*cloud.state.lastLoss);
+}
+
+void SessionLoading::reload(CloudLoader& cloud, Arrivals& arrivals) {
+    release(cloud.state.id);
+    arrivals.failed.push_back(cloud.state.id);
+    open(cloud);
+    cloud.reloadedAt = now_();
+    ++cloud.state.reloads;
+    ++counters_.cloudsReloaded;
 }
 
 // --- failing and letting go ----------------------------------------------------------------------------

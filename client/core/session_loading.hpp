@@ -28,8 +28,10 @@ class SessionLoading {
     ~SessionLoading();
 
     CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
-    bool remove(CloudId id); // false if there is none
-    void retry();            // ViewSession::retry()
+    bool remove(CloudId id);                 // false if there is none
+    void retry(std::optional<CloudId> only); // ViewSession::retry()
+    // With what is counted and measured at the time.
+    CloudState stateOf(const CloudLoader& cloud) const;
 
     CloudMap& clouds() { return clouds_; }
     const CloudMap& clouds() const { return clouds_; }
@@ -68,6 +70,7 @@ class SessionLoading {
     void takeLoaded(Loaded& loaded, Arrivals& arrivals);
     void open(CloudLoader& cloud);
     void takeChunk(CloudLoader& cloud, std::uint32_t node, const Bytes& bytes);
+    void reload(CloudLoader& cloud, Arrivals& arrivals);
     void takeFailure(CloudLoader& cloud, const LoadItem& item, const Error& error, Arrivals& arrivals);
     void failed(CloudLoader& cloud, Arrivals& arrivals);
     void release(CloudId id);

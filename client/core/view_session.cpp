@@ -47,7 +47,7 @@ class Session final : public ViewSession {
     std::vector<CloudState> clouds() const override {
         std::vector<CloudState> states;
         for (const auto& [id, cloud] : loading_.clouds())
-            states.push_back(cloud.state);
+            states.push_back(loading_.stateOf(cloud));
         return states;
     }
 
@@ -174,8 +174,8 @@ class Session final : public ViewSession {
         return {loading_.errors().begin(), loading_.errors().end()};
     }
     std::optional<Error> passingFailure() const override { return loading_.passingFailure(); }
-    void retry() override {
-        loading_.retry();
+    void retry(std::optional<CloudId> only) override {
+        loading_.retry(only);
         dirty_ = true;
     }
 

@@ -55,6 +55,15 @@ struct CloudState {
     std::shared_ptr<const CloudMetadata> metadata; // ready
     // Ready, but its source fails: why nothing more is asked of it until ViewSession::retry().
     std::optional<Error> interrupted;
+    // What failed a moment ago and is tried again by itself: why, and the seconds until the next attempt.
+    std::optional<Error> retrying;
+    double retrySeconds = 0;
+    // Nodes, and pieces of the hierarchy with all nodes in them, that were given up until retry(); why the
+    // last of them was.
+    std::uint64_t nodesMissing = 0, chunksMissing = 0;
+    std::optional<Error> lastLoss;
+    int reloads = 0;     // how often its file was replaced by another, which is shown now
+    std::string caution; // ByteSource::caution()
     bool visible = true;
 };
 
@@ -117,9 +126,9 @@ class ViewSession {
     virtual std::vector<Error> recentErrors() const = 0;
     // Why something that is being tried again failed before; nothing if nothing is.
     virtual std::optional<Error> passingFailure() const = 0;
-    // Asks again for what networks and servers have failed to deliver: clouds that could not be opened or
-    // were interrupted, nodes that were given up. Camera, style and all that is here stay.
-    virtual void retry() = 0;
+    // Asks again for what could not be had, of one cloud or of all: clouds that could not be opened or were
+    // interrupted, nodes that were given up. Camera, style and all that is here stay.
+    virtual void retry(std::optional<CloudId> only = std::nullopt) = 0;
 };
 
 } // namespace stipple

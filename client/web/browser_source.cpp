@@ -4,8 +4,10 @@
 #include "shared/base/text.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <deque>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 namespace stipple::web {
@@ -41,7 +43,7 @@ class BrowserSource : public ByteSource {
             arrived_.push_back({request, std::move(done), Bytes{}});
             return request;
         }
-        reads_.emplace(request, Read{range, std::move(done), {}, false});
+        reads_.emplace(request, Read{range, std::move(done), {}});
         owners().emplace(request, this);
         start(request, range);
         return request;
@@ -66,10 +68,11 @@ class BrowserSource : public ByteSource {
         return delivered;
     }
 
-    // The page puts a body down as a whole, so only its beginning is known.
     Progress progress(RequestId id) const override {
         auto read = reads_.find(static_cast<std::uint32_t>(id));
-        return {read != reads_.end() && read->second.hasBegun, 0};
+        if (read == reads_.end())
+            return {};
+        return {read->second.begunAt.has_value(), read->second.bytesHere, read->second.begunAt};
     }
 
     std::string name() const override { return name_; }
@@ -85,16 +88,27 @@ class BrowserSource : public ByteSource {
             return -1;
         }
         read.body.resize(static_cast<std::size_t>(*judged));
-        read.hasBegun = true;
+        read.begunAt = std::chrono::steady_clock::now();
         return static_cast<double>(*judged);
     }
 
-    std::uint8_t* bodyBuffer(std::uint32_t request, double size) {
-        Bytes& body = reads_.at(request).body;
-        return size == static_cast<double>(body.size()) ? body.data() : nullptr;
+    std::uint8_t* bodyBuffer(std::uint32_t request, std::size_t size) {
+        Read& read = reads_.at(request);
+        if (size > read.body.size() - read.bytesHere) {
+            stippleHostAbort(request);
+            fail(request, ReadFailure::longBody, "");
+            return nullptr;
+        }
+        read.bytesHere += size;
+        return read.body.data() + (read.bytesHere - size);
     }
 
-    void finishBody(std::uint32_t request) { answer(request, std::move(reads_.at(request).body)); }
+    void finishBody(std::uint32_t request) {
+        Read& read = reads_.at(request);
+        if (read.bytesHere < read.body.size())
+            return fail(request, ReadFailure::shortBody, "");
+        answer(request, std::move(read.body));
+    }
 
     void fail(std::uint32_t request, ReadFailure failure, const std::string& detail) {
         answer(request, errorOf(failure, detail));
@@ -105,7 +119,8 @@ class BrowserSource : public ByteSource {
         ByteRange range;
         Completion done;
         Bytes body;
-        bool hasBegun = false;
+        std::size_t bytesHere = 0; // of the body
+        std::optional<std::chrono::steady_clock::time_point> begunAt = {};
     };
     virtual void start(std::uint32_t request, ByteRange range) = 0;
     void expectBody(std::uint32_t request, std::uint64_t size) {
@@ -120,22 +135,45 @@ class BrowserSource : public ByteSource {
         stippleHostWake();
     }
 
+    virtual bool wasReadBefore() const { return false; } // a first answer was accepted
+
   private:
     Error errorOf(ReadFailure failure, const std::string& detail) const {
         switch (failure) {
         case ReadFailure::shortBody:
             return {ErrorCode::truncated, "the server closed the connection before the end", name_,
-                    "try again"};
+                    "try again; if it goes on, the file or a proxy on the way is damaged"};
         case ReadFailure::longBody:
             return {ErrorCode::networkFailed, "the server sent more bytes than it announced", name_, ""};
         case ReadFailure::fileGone:
             return {ErrorCode::changed, cat("the file can't be read any more: ", detail), name_,
                     "drop it on the page again"};
+        case ReadFailure::notAllowed:
+            return notAllowedError(detail);
+        case ReadFailure::mixedContent:
+            return {ErrorCode::unsupported, "a page that came over https may not read from an http address",
+                    name_, "give the cloud by https, or open the page by http; nothing was asked for"};
+        case ReadFailure::notPrepared:
+            return {ErrorCode::networkFailed, cat("the page could not prepare the request: ", detail), name_,
+                    "it is this page's prepareRequest that failed"};
         case ReadFailure::network:
             break;
         }
         return {ErrorCode::networkFailed, cat("the server can't be reached: ", detail), name_,
-                "is it running? From another host, does it send Access-Control-Allow-Origin?"};
+                "is the address right, the server running, this machine online?"};
+    }
+
+    // Browsers hide an answer from a page that its server does not allow to read it. A server that did before
+    // has an error now (proxies often leave the field out of their own answers); another never will.
+    Error notAllowedError(const std::string& origin) const {
+        if (wasReadBefore())
+            return {ErrorCode::networkFailed, "the server's answer was hidden from this page", name_,
+                    "most likely an error of the server, which came without Access-Control-Allow-Origin"};
+        return {ErrorCode::unsupported, "the server is there, but does not allow this page to read the file",
+                name_,
+                cat("it must send Access-Control-Allow-Origin: ", origin,
+                    " (or *) and Access-Control-Expose-Headers: Content-Range, ETag, Retry-After; for tokens "
+                    "also Access-Control-Allow-Headers: Authorization, Range")};
     }
 
     struct Arrival {
@@ -152,8 +190,10 @@ class FetchSource final : public BrowserSource {
   public:
     explicit FetchSource(const std::string& url) : BrowserSource(url) {}
     std::uint64_t sizeBytes() const override { return version_.sizeBytes; }
+    std::string caution() const override { return versionCaution(version_); }
 
   private:
+    bool wasReadBefore() const override { return version_.pinned; }
     bool forgetVersion() override {
         version_ = {};
         return true;
@@ -215,7 +255,7 @@ double acceptHeaders(std::uint32_t request, const RangeAnswer& answer) {
     return owner ? owner->acceptHeaders(request, answer) : -1;
 }
 
-std::uint8_t* bodyBuffer(std::uint32_t request, double size) {
+std::uint8_t* bodyBuffer(std::uint32_t request, std::size_t size) {
     BrowserSource* owner = ownerOf(request);
     return owner ? owner->bodyBuffer(request, size) : nullptr;
 }

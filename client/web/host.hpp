@@ -8,10 +8,10 @@
 
 extern "C" {
 
-// Starts a GET of `url` with `Range: rangeField`. Answered by stipple_read_headers, then stipple_read_body
-// with the body, or by stipple_read_failed.
+// Starts a GET of `url` with `Range: rangeField`. Answered by stipple_read_headers, then by a
+// stipple_read_buffer for each piece of the body and stipple_read_done, or by stipple_read_failed.
 void stippleHostFetch(std::uint32_t request, const char* url, const char* rangeField);
-// Reads bytes [offset, offset + size) of a File the page holds. Answered by stipple_read_body or _failed.
+// Reads bytes [offset, offset + size) of a File the page holds. Answered likewise, without headers.
 void stippleHostReadFile(std::uint32_t request, std::uint32_t file, double offset, double size);
 void stippleHostAbort(std::uint32_t request); // no answer comes any more
 void stippleHostCloseFile(std::uint32_t file);

@@ -410,9 +410,7 @@ std::string Viewer::countersJson() const {
 }
 
 std::string Viewer::errorsJson() const {
-    nlohmann::json list = nlohmann::json::array();
-    for (const Error& error : session_->recentErrors())
-        list.push_back(error.sentence());
+    nlohmann::json list = nlohmann::json::array(); // what clouds lack is in their states
     if (drawError_)
         list.push_back(drawError_->sentence());
     if (renderer_ && !renderer_->limitation().empty())

@@ -26,6 +26,7 @@ class Viewer {
     CloudId addFile(std::uint32_t file, const std::string& name, std::uint64_t sizeBytes);
     void removeCloud(CloudId id);
     void setVisible(CloudId id, bool visible);
+    void retry(std::optional<CloudId> only) { session_->retry(only); }
     // An array of clouds as in client/core/json.hpp.
     std::string cloudsJson() const;
     // client/core/cloud_facts.hpp; null unless the cloud is ready.
@@ -110,7 +111,7 @@ class Viewer {
     // {"frame":{FrameCounters},"session":{SessionCounters},"gpuBytes":…,"heapBytes":…,
     // "decodesPending":…,"settled":…}
     std::string countersJson() const;
-    // The most recent loading and drawing errors, newest last: ["sentence", …].
+    // What can not be drawn as asked for: ["sentence", …]. What clouds lack is in cloudsJson().
     std::string errorsJson() const;
 
     // The browser took the context away, and gave it back.

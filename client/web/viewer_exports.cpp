@@ -47,6 +47,10 @@ EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_file(std::uint32_t file, const ch
 EMSCRIPTEN_KEEPALIVE void stipple_remove_cloud(std::uint32_t id) {
     viewer->removeCloud(id);
 }
+// Asks again for what could not be had; of all clouds: 0.
+EMSCRIPTEN_KEEPALIVE void stipple_retry(std::uint32_t id) {
+    viewer->retry(id == 0 ? std::nullopt : std::optional(id));
+}
 EMSCRIPTEN_KEEPALIVE void stipple_set_visible(std::uint32_t id, int visible) {
     viewer->setVisible(id, visible != 0);
 }
@@ -198,13 +202,13 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_context_restored() {
 // Answers of the page to reads (client/web/browser_source.hpp). `contentLength` < 0: not said.
 EMSCRIPTEN_KEEPALIVE double stipple_read_headers(std::uint32_t request, int status, const char* contentRange,
                                                  const char* etag, const char* lastModified,
-                                                 double contentLength) {
-    RangeAnswer answer{status, contentRange, etag, lastModified, std::nullopt};
+                                                 double contentLength, const char* retryAfter) {
+    RangeAnswer answer{status, contentRange, etag, lastModified, std::nullopt, retryAfter};
     if (contentLength >= 0)
         answer.contentLength = static_cast<std::uint64_t>(contentLength);
     return web::acceptHeaders(request, answer);
 }
-EMSCRIPTEN_KEEPALIVE std::uint8_t* stipple_read_buffer(std::uint32_t request, double size) {
+EMSCRIPTEN_KEEPALIVE std::uint8_t* stipple_read_buffer(std::uint32_t request, std::size_t size) {
     return web::bodyBuffer(request, size);
 }
 EMSCRIPTEN_KEEPALIVE void stipple_read_done(std::uint32_t request) {

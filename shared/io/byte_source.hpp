@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace stipple {
@@ -39,17 +40,22 @@ class ByteSource {
     // Takes a request back; its completion is called with `cancelled` unless it was answered already.
     virtual void cancel(RequestId) {}
 
-    // How far an open read is: whether its answer has begun, and how many of its bytes are here. Sources that
-    // can't tell, and reads that were answered, say nothing.
+    // How far an open read is: whether its answer has begun, how many of its bytes are here, and, where the
+    // source was there to see it, when it began. Sources that can't tell, and reads that were answered, say
+    // nothing.
     struct Progress {
         bool hasBegun = false;
         std::uint64_t bytes = 0;
+        std::optional<std::chrono::steady_clock::time_point> begunAt = {};
     };
     virtual Progress progress(RequestId) const { return {}; }
 
     // Whatever version of the file the next answer is of is the one to be read from now on. False: it is one
     // version for good. No read is open.
     virtual bool forgetVersion() { return false; }
+
+    // What may go wrong with it later although it can be read: a sentence. Empty: nothing is known.
+    virtual std::string caution() const { return {}; }
 
     // Delivers completions that have arrived, waiting up to `wait` for the first. Returns the number
     // delivered. Sources that answer inside read(), or that a browser drives, have nothing to do here.

@@ -13,6 +13,8 @@ constexpr const char* timeoutText = "the server did not answer in time";
 constexpr const char* reloadAdvice = "open it again";
 constexpr const char* rangeAdvice =
     "serve the file with `stipple serve`, or with any server that answers byte ranges";
+constexpr const char* exposeAdvice =
+    "from another host, it must expose the header: Access-Control-Expose-Headers: Content-Range, ETag";
 constexpr int longestPauseSeconds = 3600; // that a server can ask for
 
 // RFC 9110 §14.4: "bytes first-last/size" or "bytes */size"; a size of "*" is unknown.
@@ -84,14 +86,15 @@ Status checkVersion(const RangeAnswer& answer, std::optional<std::uint64_t> size
 Result<std::uint64_t> judgePart(ByteRange asked, const RangeAnswer& answer, FileVersion& version,
                                 const std::string& where) {
     std::optional<ContentRange> part = parseContentRange(answer.contentRange);
-    if (!part || !part->satisfied) {
-        std::string what = answer.contentRange.empty()
-                               ? "the server sent a part of the file without saying which"
-                               : cat("the server's Content-Range \"", answer.contentRange, "\" is no range");
-        return Error{ErrorCode::networkFailed, what, where,
-                     "from another host, it must expose the header: Access-Control-Expose-Headers: "
-                     "Content-Range, ETag"};
+    if (!part && answer.contentRange.empty()) {
+        // Who has said it before has an error now; who has not never will.
+        ErrorCode code = version.pinned ? ErrorCode::networkFailed : ErrorCode::unsupported;
+        return Error{code, "the server sent a part of the file without saying which", where, exposeAdvice};
     }
+    if (!part || !part->satisfied)
+        return Error{ErrorCode::networkFailed,
+                     cat("the server's Content-Range \"", answer.contentRange, "\" is no range"), where,
+                     rangeAdvice};
     STIPPLE_CHECK(checkVersion(answer, part->sizeBytes, version, where));
     // A part may end early only at the end of the file.
     std::uint64_t fileEnd = part->sizeBytes.value_or(asked.end());
@@ -143,6 +146,20 @@ Error statusError(const RangeAnswer& answer, const std::string& where) {
 }
 
 } // namespace
+
+std::string versionCaution(const FileVersion& version) {
+    if (!version.pinned)
+        return {};
+    if (version.etag.starts_with("W/"))
+        return "its server names versions by a weak ETag only: bytes that change may go unnoticed";
+    if (version.etag.empty() && version.lastModified.empty())
+        return "its server names no version of it (no ETag and no Last-Modified, or they are hidden): a "
+               "replacement of the same size goes unnoticed";
+    if (version.etag.empty())
+        return "its server names no version of it but the date (no ETag, or it is hidden): a replacement "
+               "within a second goes unnoticed";
+    return {};
+}
 
 std::string rangeField(ByteRange range) {
     return cat("bytes=", range.offset, "-", range.end() - 1);

@@ -5,6 +5,7 @@
 //   200 to a range from byte 0 that holds a whole file  the body is read (a tiny file on a plain server)
 //   200 otherwise                                       the server ignores Range: nothing is read
 //   another file than before                            `changed`, whichever status says so
+//   206 without Content-Range, at first                 `unsupported`: the server hides it
 //   401, 403                                            `accessDenied`: asking again would not help
 //   429, 503 and all others                             `networkFailed`, with the pause that Retry-After
 //   names
@@ -39,6 +40,10 @@ struct FileVersion {
     std::uint64_t sizeBytes = 0;
     bool pinned = false;
 };
+
+// What a replacement of the file may do unnoticed, where its server names versions badly: a sentence. Empty:
+// the version is sure, or nothing was read yet.
+std::string versionCaution(const FileVersion& version);
 
 // Value of the request's Range field; `range.size` > 0.
 std::string rangeField(ByteRange range); // "bytes=0-65535"

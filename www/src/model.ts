@@ -1,4 +1,5 @@
 import { Annotations } from './annotations/annotations.ts';
+import { CloudProblems } from './cloud_problems.ts';
 import { Clipping } from './clipping/clipping.ts';
 import { Frames } from './drawing/frames.ts';
 import { Picking } from './drawing/picking.ts';
@@ -17,6 +18,7 @@ import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts
 import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
 import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
+import { Requests } from './wasm/requests.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /**
@@ -42,6 +44,8 @@ export class Model extends EventTarget {
     readonly frames: Frames;
     readonly surface: Surface;
     readonly picking: Picking;
+    /** What is wrong with clouds. */
+    readonly problems: CloudProblems;
     readonly camera: CameraMoves;
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
@@ -79,6 +83,8 @@ export class Model extends EventTarget {
         texts: Texts,
         /** Whose clouds are listed, and who cuts profiles. */
         readonly server: URL | undefined,
+        /** How clouds are asked for; whoever embeds the page sets its `prepare`. */
+        readonly requests: Requests,
     ) {
         super();
         this.texts = texts;
@@ -89,6 +95,7 @@ export class Model extends EventTarget {
         this.scenes = new Scenes(this, viewer);
         this.counting = new ViewCounting(this, viewer);
         this.looks = new Looks(this, viewer, this.counting);
+        this.problems = new CloudProblems(this, viewer, requests);
         this.read();
         this.surface.follow(this.frames, {
             lost: () => this.setContextLost(true),
@@ -99,12 +106,17 @@ export class Model extends EventTarget {
         });
     }
 
-    static async create(canvas: HTMLCanvasElement, texts: Texts, server?: URL): Promise<Model> {
+    static async create(
+        canvas: HTMLCanvasElement,
+        texts: Texts,
+        server?: URL,
+        requests = new Requests(),
+    ): Promise<Model> {
         let model: Model | undefined;
-        const viewer = await Viewer.create(canvas, () => model?.wake()).catch((error: unknown) => {
+        const viewer = await Viewer.create(canvas, () => model?.wake(), requests).catch((error: unknown) => {
             throw canvas.getContext('webgl2') ? error : new Problem('page.noWebgl');
         });
-        return (model = new Model(canvas, viewer, texts, server));
+        return (model = new Model(canvas, viewer, texts, server, requests));
     }
 
     // Clouds
@@ -263,6 +275,7 @@ export class Model extends EventTarget {
         this.counting.stop();
         this.film.stop();
         this.annotations.endTour();
+        this.problems.stop();
         this.viewer.dispose();
         this.surface.release();
     }
@@ -293,13 +306,13 @@ export class Model extends EventTarget {
         this.projection = this.viewer.camera().projection;
         this.counters = this.viewer.counters();
         this.clouds = this.viewer.clouds();
+        this.problems.tellReloads();
         this.tellErrors();
     }
 
-    /** Each error once, also where the list of clouds is out of sight. */
+    /** What can't be drawn as asked for; each once. */
     private tellErrors(): void {
-        const failures = this.clouds.flatMap((cloud) => cloud.error?.sentence ?? []);
-        for (const sentence of [...failures, ...this.viewer.errors()]) {
+        for (const sentence of this.viewer.errors()) {
             if (this.toldErrors.has(sentence)) continue;
             this.toldErrors.add(sentence);
             this.notify(sentence);

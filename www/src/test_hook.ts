@@ -1,16 +1,23 @@
 import type { Annotation } from './annotations/annotation.ts';
 import type { Measurement } from './measuring/measurement.ts';
 import type { Model } from './model.ts';
-import type { Counters, PickedPoint } from './wasm/values.ts';
+import type { PrepareRequest } from './wasm/requests.ts';
+import type { CloudState, Counters, PickedPoint } from './wasm/values.ts';
 
 /**
  * `window.stipple`: the page for programs. Tests and measurements in a browser use it; so may whoever embeds the
  * page. Everything else goes through the controls.
  */
 export interface TestHook {
+    /** Opens a cloud by its address, absolute or relative to the page. */
+    open(address: string, name?: string): void;
+    /** Called before each request for bytes of a cloud: headers, credentials, signed addresses. */
+    prepareRequest: PrepareRequest | undefined;
     /** Resolves when everything that the picture wants has arrived and is drawn. */
     settled(): Promise<void>;
     counters(): Counters;
+    /** What is open, how far it is and what is wrong with it. */
+    clouds(): CloudState[];
     /** The fields of client/core/camera.hpp; absent ones stay. Throws the sentence of a bad one. */
     setCamera(camera: object): void;
     camera(): object;
@@ -34,8 +41,16 @@ declare global {
 
 export function installTestHook(model: Model): void {
     window.stipple = {
+        open: (address, name) => void model.openAddress(address, name),
+        get prepareRequest() {
+            return model.requests.prepare;
+        },
+        set prepareRequest(prepare) {
+            model.requests.prepare = prepare;
+        },
         settled: () => model.frames.settled(),
         counters: () => model.readCounters(),
+        clouds: () => model.clouds,
         setCamera: (camera) => model.camera.change(camera),
         camera: () => model.camera.read(),
         setStyle: (style) => model.changeStyle(style),

@@ -6,6 +6,7 @@ import { type CloudPage, listClouds, type ListedCloud } from '../server_clouds.t
 import { loadTexts, Texts } from '../texts/texts.ts';
 import { App } from '../ui/app.ts';
 import type { Camera, CloudState, Limits, PickedPoint, Style, Vector } from '../wasm/values.ts';
+import { type PrepareRequest, Requests } from '../wasm/requests.ts';
 import type { StyleChange } from '../wasm/viewer.ts';
 import type { StippleViewerEventName, StippleViewerEvents } from './events.ts';
 import { Run } from './run.ts';
@@ -30,6 +31,7 @@ const observed = ['src', 'budget', 'controls', 'lang', 'share'] as const;
 export class StippleViewer extends HTMLElement {
     static readonly observedAttributes: readonly string[] = observed;
 
+    private readonly requests = new Requests();
     private readonly root: ShadowRoot;
     private model: Model | undefined;
     private app: App | undefined;
@@ -68,6 +70,22 @@ export class StippleViewer extends HTMLElement {
     whenReady(): Promise<void> {
         if (!this.run) return Promise.reject(new Error('the viewer is not in a document'));
         return this.run.ready;
+    }
+
+    /**
+     * Called before each request for bytes of a cloud; may be set before there is a document. Requests carry what it
+     * makes of them: another address, for example a signed one, headers, credentials.
+     */
+    get prepareRequest(): PrepareRequest | undefined {
+        return this.requests.prepare;
+    }
+    set prepareRequest(prepare: PrepareRequest | undefined) {
+        this.requests.prepare = prepare;
+    }
+
+    /** Asks again for what a cloud could not have, or all of them. What is here stays, and the camera. */
+    retry(id = 0): void {
+        this.get().model.problems.retry(id);
     }
 
     /** Opens a cloud by its address or as a file; its id. Whether that works is told by `cloud-change` and `problem`. */
@@ -188,7 +206,7 @@ export class StippleViewer extends HTMLElement {
             list?.catch(() => {}); // told by the model
             texts = await loadTexts(this.languages());
             const canvas = this.addCanvas();
-            const model = await Model.create(canvas, texts, base);
+            const model = await Model.create(canvas, texts, base, this.requests);
             if (run.isStopped) return model.dispose();
             this.begin(model, run, list);
         } catch (error) {
@@ -237,8 +255,9 @@ export class StippleViewer extends HTMLElement {
             const text = JSON.stringify(model.clouds);
             if (text !== clouds) this.tell('cloud-change', { clouds: model.clouds });
             clouds = text;
-            const fresh = model.notices.filter((notice) => !notices.includes(notice));
-            notices = model.notices;
+            const told = [...model.notices, ...model.problems.sentences()];
+            const fresh = told.filter((notice) => !notices.includes(notice));
+            notices = told;
             for (const sentence of fresh) this.tell('problem', { sentence });
         });
         model.measuring.addEventListener('change', () =>

@@ -8,6 +8,7 @@ import './legend_overlay.ts';
 import './look_panel.ts';
 import './measure_overlay.ts';
 import './measure_panel.ts';
+import './problem_list.ts';
 import './scene_panel.ts';
 
 import { css, html, type TemplateResult } from 'lit';
@@ -375,6 +376,7 @@ export class App extends ModelElement {
                 ${this.model.isContextLost
                     ? html`<div class="notice" role="alert"><span>${this.text('page.contextLost')}</span></div>`
                     : ''}
+                <stipple-problems .model=${this.model}></stipple-problems>
                 ${this.model.notices.map(
                     (notice) =>
                         html`<div class="notice" role="alert">

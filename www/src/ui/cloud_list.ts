@@ -58,7 +58,8 @@ export class CloudList extends ModelElement {
                 display: block;
                 color: var(--muted);
             }
-            .failed small {
+            .failed small,
+            small.interrupted {
                 color: var(--danger);
                 overflow-wrap: anywhere;
             }
@@ -130,6 +131,8 @@ export class CloudList extends ModelElement {
                 ${cloud.stage === 'failed'
                     ? html`<small>${cloud.error?.sentence}</small>`
                     : html`<small title=${cloud.crs ?? ''}>${this.describe(cloud)}</small>`}
+                ${cloud.interrupted ? html`<small class="interrupted">${cloud.interrupted.sentence}</small>` : ''}
+                ${cloud.caution ? html`<small class="caution">${this.text('clouds.note', { note: cloud.caution })}</small>` : ''}
             </div>
             <button class="close" aria-label=${this.text('clouds.close', { name: cloud.name })} @click=${() => this.model.close(cloud.id)}>
                 ✕

@@ -1,13 +1,16 @@
 import { DecoderPool } from './decoder_pool.ts';
 import { Heap } from './heap.ts';
 import type { ViewerProgram } from './program.ts';
+import { isMixedContent, isThereButNotAllowed, type Requests } from './requests.ts';
 
 /** ReadFailure of client/web/browser_source.hpp. */
 const enum Failure {
     network = 0,
     shortBody = 1,
-    longBody = 2,
     fileGone = 3,
+    notAllowed = 4,
+    mixedContent = 5,
+    notPrepared = 6,
 }
 
 /**
@@ -22,7 +25,10 @@ export class Host {
     private heap!: Heap;
     private decoders: DecoderPool | undefined;
 
-    constructor(readonly wake: () => void) {}
+    constructor(
+        readonly wake: () => void,
+        private readonly sending: Requests,
+    ) {}
 
     /** Starts with the program that this host serves. */
     attach(program: ViewerProgram): Heap {
@@ -38,6 +44,7 @@ export class Host {
 
     dispose(): void {
         this.requests.forEach((request) => request.abort());
+        this.requests.clear();
         this.decoders?.dispose();
     }
 
@@ -63,7 +70,7 @@ export class Host {
             .slice(offset, offset + size)
             .arrayBuffer()
             .then(
-                (buffer) => this.deliver(request, [new Uint8Array(buffer)], size),
+                (buffer) => this.put(request, new Uint8Array(buffer)) && this.end(request),
                 (error: unknown) => this.fail(request, Failure.fileGone, messageOf(error)),
             );
     }
@@ -89,20 +96,35 @@ export class Host {
         request: number,
         url: string,
         range: string,
-        controller: AbortController,
+        { signal }: AbortController,
     ): Promise<void> {
-        let failure = Failure.network;
+        let failure = Failure.notPrepared;
+        let asked = url;
         try {
-            // Browsers' caches serialise ranges of one address and have mixed them up; the viewer has its own.
-            const options: RequestInit = { cache: 'no-store', signal: controller.signal };
-            const response = await fetch(url, { ...options, headers: { Range: range } });
-            const expected = this.acceptHeaders(request, response);
-            if (expected < 0) return;
+            const prepared = await this.sending.prepared(url, range);
+            asked = prepared.url;
+            if (signal.aborted) return;
+            if (isMixedContent(asked)) return this.fail(request, Failure.mixedContent, '');
+            failure = Failure.network;
+            const response = await fetch(asked, { ...prepared.init, signal });
+            if (this.acceptHeaders(request, response) < 0) return; // the program has it aborted
             failure = Failure.shortBody;
-            const parts = await readAtMost(response, expected);
-            if (!controller.signal.aborted) this.deliver(request, parts, expected);
+            await this.readBody(request, response);
         } catch (error) {
-            if (!controller.signal.aborted) this.fail(request, failure, messageOf(error));
+            if (signal.aborted) return;
+            const isHidden = failure === Failure.network && (await isThereButNotAllowed(asked, signal));
+            if (isHidden) this.fail(request, Failure.notAllowed, location.origin);
+            else this.fail(request, failure, navigator.onLine ? messageOf(error) : 'this machine is offline');
+        }
+    }
+
+    /** Each piece goes to its place as it comes, so that the program knows how far the answer is. */
+    private async readBody(request: number, response: Response): Promise<void> {
+        const reader = response.body?.getReader();
+        for (;;) {
+            const { done, value } = (await reader?.read()) ?? { done: true, value: undefined };
+            if (done) return this.end(request);
+            if (!this.put(request, value)) return; // taken back, or longer than it may be: aborted
         }
     }
 
@@ -111,8 +133,8 @@ export class Host {
         const isCoded = field('content-encoding') !== '';
         const length = isCoded || field('content-length') === '' ? -1 : Number(field('content-length'));
         return this.heap.lendTexts(
-            [field('content-range'), field('etag'), field('last-modified')],
-            (contentRange, etag, lastModified) =>
+            [field('content-range'), field('etag'), field('last-modified'), field('retry-after')],
+            (contentRange, etag, lastModified, retryAfter) =>
                 this.program._stipple_read_headers(
                     request,
                     response.status,
@@ -120,32 +142,27 @@ export class Host {
                     etag!,
                     lastModified!,
                     length,
+                    retryAfter!,
                 ),
         );
     }
 
-    private deliver(request: number, parts: Uint8Array[], expected: number): void {
-        if (!this.requests.delete(request)) return; // taken back meanwhile
-        const received = parts.reduce((sum, part) => sum + part.length, 0);
-        if (received !== expected) {
-            const failure = received < expected ? Failure.shortBody : Failure.longBody;
-            this.report(request, failure, '');
-            return;
-        }
-        let at = this.program._stipple_read_buffer(request, expected);
-        for (const part of parts) {
-            this.heap.put(at, part);
-            at += part.length;
-        }
-        this.program._stipple_read_done(request);
+    /** False: nobody wants it any more. */
+    private put(request: number, part: Uint8Array): boolean {
+        if (!this.requests.has(request)) return false;
+        if (part.length === 0) return true;
+        const at = this.program._stipple_read_buffer(request, part.length);
+        if (at !== 0) this.heap.put(at, part);
+        return at !== 0;
+    }
+
+    private end(request: number): void {
+        if (this.requests.delete(request)) this.program._stipple_read_done(request);
     }
 
     private fail(request: number, failure: Failure, detail: string): void {
-        if (this.requests.delete(request)) this.report(request, failure, detail);
-    }
-
-    private report(request: number, failure: Failure, detail: string): void {
-        this.heap.lendTexts([detail], (at) => this.program._stipple_read_failed(request, failure, at!));
+        if (this.requests.delete(request))
+            this.heap.lendTexts([detail], (at) => this.program._stipple_read_failed(request, failure, at!));
     }
 
     private decoded(job: number, message: Uint8Array, arrays: Uint8Array[]): void {
@@ -160,21 +177,6 @@ export class Host {
         });
         this.program._stipple_decode_done(job);
     }
-}
-
-/** The body, or what came of it as soon as it is longer than `limit`. */
-async function readAtMost(response: Response, limit: number): Promise<Uint8Array[]> {
-    const parts: Uint8Array[] = [];
-    const reader = response.body?.getReader();
-    if (!reader) return parts;
-    for (let received = 0; received <= limit; ) {
-        const { done, value } = await reader.read();
-        if (done) return parts;
-        parts.push(value);
-        received += value.length;
-    }
-    await reader.cancel();
-    return parts;
 }
 
 function messageOf(error: unknown): string {

@@ -25,6 +25,7 @@ export interface ViewerProgram extends Program {
     _stipple_add_url(url: Address, name: Address): number;
     _stipple_add_file(file: number, name: Address, sizeBytes: number): number;
     _stipple_remove_cloud(id: number): void;
+    _stipple_retry(id: number): void;
     _stipple_set_visible(id: number, visible: number): void;
     _stipple_clouds(): Address;
     _stipple_cloud_facts(id: number): Address;
@@ -77,6 +78,7 @@ export interface ViewerProgram extends Program {
         etag: Address,
         lastModified: Address,
         contentLength: number,
+        retryAfter: Address,
     ): number;
     _stipple_read_buffer(request: number, size: number): Address;
     _stipple_read_done(request: number): void;

@@ -116,6 +116,17 @@ export interface CloudState {
     stage: 'opening' | 'ready' | 'failed';
     visible: boolean;
     error?: CloudError;
+    /** Nothing more is asked of its server until somebody says so. */
+    interrupted?: CloudError;
+    /** Failed a moment ago and is tried again by itself, in so many seconds. */
+    retrying?: CloudError;
+    retrySeconds?: number;
+    /** Nodes and pieces of the hierarchy that were given up. */
+    missing?: { nodes: number; chunks: number; last: CloudError };
+    /** How often its file was replaced by another, which is shown now. */
+    reloads?: number;
+    /** What may go wrong later. */
+    caution?: string;
     pointCount?: number;
     bounds?: { min: Vector; max: Vector } | null;
     crs?: string;

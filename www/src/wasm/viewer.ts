@@ -5,6 +5,7 @@ import { compiledOnce } from './compiled.ts';
 import type { Heap } from './heap.ts';
 import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
+import type { Requests } from './requests.ts';
 import type {
     Camera,
     CloudFacts,
@@ -35,10 +36,10 @@ export class Viewer {
         private readonly host: Host,
     ) {}
 
-    /** `wake` is called when something arrived and a frame is due. */
-    static async create(canvas: HTMLCanvasElement, wake: () => void): Promise<Viewer> {
+    /** `wake` is called when something arrived and a frame is due; `requests` is how clouds are asked for. */
+    static async create(canvas: HTMLCanvasElement, wake: () => void, requests: Requests): Promise<Viewer> {
         const compiled = await compiledOnce(viewerUrl);
-        const host = new Host(wake);
+        const host = new Host(wake, requests);
         const program = await new Promise<ViewerProgram>((resolve, reject) => {
             const options: ProgramOptions = {
                 canvas,
@@ -74,6 +75,10 @@ export class Viewer {
     }
     removeCloud(id: number): void {
         this.program._stipple_remove_cloud(id);
+    }
+    /** Asks again for what could not be had; of all clouds without an id. */
+    retry(id = 0): void {
+        this.program._stipple_retry(id);
     }
     setVisible(id: number, visible: boolean): void {
         this.program._stipple_set_visible(id, visible ? 1 : 0);

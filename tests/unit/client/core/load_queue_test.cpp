@@ -169,7 +169,7 @@ TEST_CASE("while something is tried again it is known why, and no longer once it
 }
 
 TEST_CASE("a failure that can't pass is answered at once") {
-    auto code = GENERATE(ErrorCode::changed, ErrorCode::notFound, ErrorCode::truncated);
+    auto code = GENERATE(ErrorCode::changed, ErrorCode::notFound, ErrorCode::unsupported);
     Loading loading;
     loading.script->failure = [&](ByteRange) { return Error{code, "", "", ""}; };
     loading.queue.want({item(1, {0, 50})});
@@ -178,15 +178,34 @@ TEST_CASE("a failure that can't pass is answered at once") {
     CHECK(loaded[0].bytes.error().code == code);
 }
 
-TEST_CASE("a file that ends early fails the items beyond its end, and only those") {
+TEST_CASE("a file that ends early fails the items beyond its end, and only those, after one more attempt") {
     Loading loading;
     loading.script->file.resize(120);
     loading.queue.want({item(1, {0, 100}), item(2, {110, 50})});
     std::vector<Loaded> loaded = loading.go();
-    REQUIRE(loaded.size() == 2);
+    REQUIRE(loaded.size() == 1);
     CHECK(loaded[0].bytes.ok());
-    REQUIRE_FALSE(loaded[1].bytes.ok());
-    CHECK(loaded[1].bytes.error().code == ErrorCode::truncated);
+    loaded = loading.go(start + loading.queue.pauseAfter(1));
+    REQUIRE(loaded.size() == 1);
+    REQUIRE_FALSE(loaded[0].bytes.ok());
+    CHECK(loaded[0].bytes.error().code == ErrorCode::truncated);
+    CHECK(loading.script->reads.size() == 2);
+}
+
+TEST_CASE("a source that refuses is asked for nothing more until retry") {
+    auto code = GENERATE(ErrorCode::accessDenied, ErrorCode::unsupported);
+    Loading loading;
+    loading.script->failure = [&](ByteRange) { return Error{code, "no", "", ""}; };
+    loading.queue.want({item(1, {0, 50})});
+    CHECK(loading.go().size() == 1);
+    REQUIRE(loading.queue.stopped(1));
+    loading.queue.want({item(2, {0, 50})});
+    CHECK(loading.go().empty());
+    CHECK(loading.script->reads.size() == 1);
+    loading.queue.retry(1);
+    loading.script->failure = nullptr;
+    loading.queue.want({item(2, {0, 50})});
+    CHECK(loading.go().size() == 1);
 }
 
 TEST_CASE("bytes that were here before come before those that were fetched") {

@@ -58,8 +58,27 @@ TEST_CASE("another part than the one asked for is refused") {
     for (const char* range :
          {"bytes 0-49/1000", "bytes 101-150/1000", "bytes 100-150/1000", "bytes 100-149/120",
           "bytes 149-100/1000", "bytes 100-149", "bytes 100-149/1000 ", "bytes */1000", "items 100-149/1000",
-          "bytes -100-149/1000", "bytes 18446744073709551616-149/1000", "bytes", ""})
+          "bytes -100-149/1000", "bytes 18446744073709551616-149/1000", "bytes"})
         CHECK(codeOf({100, 50}, part(range)) == ErrorCode::networkFailed);
+}
+
+TEST_CASE("a hidden Content-Range is the host's way at first, and a failure where it was shown before") {
+    CHECK(codeOf({100, 50}, part("")) == ErrorCode::unsupported);
+    CHECK(codeOf({100, 50}, part(""), pinned) == ErrorCode::networkFailed);
+    FileVersion version;
+    Error error = judgeRangeAnswer({100, 50}, part(""), version, where).error();
+    CHECK(error.advice.find("Access-Control-Expose-Headers: Content-Range, ETag") != std::string::npos);
+}
+
+TEST_CASE("versions that are named badly are cautioned of") {
+    auto cautions = [](const FileVersion& version, const std::string& of) {
+        return versionCaution(version).find(of) != std::string::npos;
+    };
+    CHECK(versionCaution({}).empty()); // nothing was read yet
+    CHECK(versionCaution({"\"1\"", "", 1000, true}).empty());
+    CHECK(cautions({"W/\"1\"", "", 1000, true}, "weak ETag"));
+    CHECK(cautions({"", "Mon, 01 Jan 2024 00:00:00 GMT", 1000, true}, "but the date"));
+    CHECK(cautions({"", "", 1000, true}, "no Last-Modified"));
 }
 
 TEST_CASE("a server that ignores Range is recognised before its body is read") {

@@ -1,0 +1,340 @@
+// What goes wrong between the page and a cloud's server: the message on screen, what to do, and the state after.
+import assert from 'node:assert/strict';
+import { after, before, beforeEach, describe, test } from 'node:test';
+
+import { counters, keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
+import { bytesAskedTwice, faultyServer } from './support/faulty_server.mjs';
+import { makeTown, scratchFolder, serve } from './support/program.mjs';
+
+const size = { width: 480, height: 320 };
+let browser, folder, server, host;
+
+before(async () => {
+    folder = await scratchFolder();
+    const town = await makeTown(folder.path);
+    server = await serve(town);
+    host = await faultyServer(town);
+    browser = await launch();
+});
+after(async () => {
+    await browser?.close();
+    await host?.close();
+    await server?.stop();
+    await folder?.cleanUp();
+});
+beforeEach(() => host.restart());
+
+/** The page, with the host's file. `prepare` is done with the page before the cloud is opened. */
+async function openCloud({ prepare, budget } = {}) {
+    const opened = await openPage(browser, size);
+    await opened.page.goto(`${server.address}?cloud=`);
+    await opened.page.waitForFunction(() => window.stipple !== undefined);
+    if (budget) await opened.page.evaluate((pointBudget) => window.stipple.setLimits({ pointBudget }), budget);
+    await prepare?.(opened.page);
+    await opened.page.evaluate((address) => window.stipple.open(address, 'Town'), host.address);
+    return opened;
+}
+
+/** With a few of its points, most of the file unread. */
+async function openPart() {
+    const opened = await openCloud({ budget: 5000 });
+    await settleWithPoints(opened.page);
+    return { ...opened, camera: await cameraOf(opened.page) };
+}
+const wantAll = (page) => page.evaluate(() => window.stipple.setLimits({ pointBudget: 1_000_000 }));
+const cameraOf = (page) => page.evaluate(() => window.stipple.camera());
+
+/** The text of the one problem of that kind. */
+async function problem(page, kind, says) {
+    const box = page.locator(`[data-problem=${kind}]`, { hasText: says });
+    await box.waitFor();
+    assert.equal(await box.getAttribute('role'), kind === 'stopped' ? 'alert' : 'status');
+    return box.textContent();
+}
+const noProblem = (page) => page.locator('[data-problem]').waitFor({ state: 'detached' });
+
+/** By keyboard; then the whole cloud is there and nothing is wrong. */
+async function retryAndSee(page) {
+    await page.getByRole('button', { name: 'Retry Town' }).press('Enter');
+    await noProblem(page);
+    const { frame } = await settleWithPoints(page);
+    assert.ok(frame.complete);
+    return frame;
+}
+
+describe('hosts that are set up wrongly', () => {
+    test('one that answers 200 to a range is left at once, with how to mend it', async () => {
+        const whole = 256 << 20;
+        host.fault = () => ({ whole });
+        const { page } = await openCloud();
+        const text = await problem(page, 'stopped', 'ignores Range and sends the whole file');
+        assert.match(text, /stipple serve.*byte ranges/);
+        await keepScreenshot(page, 'no-ranges');
+        assert.equal(host.asked.length, 1);
+        await page.waitForTimeout(300);
+        assert.equal(host.cutOff, 1);
+        assert.ok(host.bytesSent < whole / 16, `${host.bytesSent} bytes were sent`);
+        const sent = host.bytesSent;
+        await page.waitForTimeout(300);
+        assert.equal(host.bytesSent, sent);
+        host.fault = undefined;
+        await retryAndSee(page);
+        await page.close();
+    });
+
+    test('one that does not allow the page to read is told apart from one that is away', async () => {
+        host.fault = () => ({ isPrivate: true });
+        const { page } = await openCloud();
+        const text = await problem(page, 'stopped', 'does not allow this page to read the file');
+        assert.ok(text.includes(`Access-Control-Allow-Origin: ${new URL(server.address).origin}`), text);
+        assert.equal(host.asked.length, 1);
+        host.fault = undefined;
+        await retryAndSee(page);
+        await page.close();
+    });
+
+    test('one that hides Content-Range', async () => {
+        host.fault = () => ({ hides: ['Content-Range'] });
+        const { page } = await openCloud();
+        const text = await problem(page, 'stopped', 'a part of the file without saying which');
+        assert.match(text, /Access-Control-Expose-Headers: Content-Range, ETag/);
+        assert.equal(host.asked.length, 1);
+        host.fault = undefined;
+        await retryAndSee(page);
+        await page.close();
+    });
+
+    test('an http address on an https page is not even asked for', async () => {
+        const { page } = await openPage(browser, size);
+        const asked = [];
+        page.on('request', (request) => asked.push(request.url()));
+        await page.route('https://maps.example/**', async (route) => {
+            const { pathname, search } = new URL(route.request().url());
+            const answer = await fetch(new URL(pathname + search, server.address));
+            const headers = { 'content-type': answer.headers.get('content-type') ?? '' };
+            await route.fulfill({ status: answer.status, headers, body: Buffer.from(await answer.arrayBuffer()) });
+        });
+        await page.goto('https://maps.example/?cloud=http://clouds.example/town.stipple');
+        const text = await problem(page, 'stopped', 'came over https may not read from an http address');
+        assert.match(text, /give the cloud by https/i);
+        assert.deepEqual(asked.filter((url) => url.includes('clouds.example')), []);
+        await page.close();
+    });
+
+    test('one that names no version, or a weak one, is noted', async () => {
+        host.fault = () => ({ headers: { etag: undefined } });
+        const { page } = await openCloud();
+        await page.getByText('no ETag and no Last-Modified').waitFor();
+        await settleWithPoints(page);
+        await page.getByRole('button', { name: 'Close Town' }).click();
+        host.fault = undefined;
+        host.etag = 'W/"1"';
+        await page.evaluate((address) => window.stipple.open(address, 'Town'), host.address);
+        await page.getByText('by a weak ETag only').waitFor();
+        await settleWithPoints(page);
+        await page.close();
+    });
+});
+
+describe('files that change or are damaged', () => {
+    for (const [kind, before, later] of [
+        ['ETag', { etag: '"1"' }, { etag: '"2"' }],
+        ['weak ETag', { etag: 'W/"1"' }, { etag: 'W/"2"' }],
+        [
+            'date, without an ETag',
+            { etag: undefined, 'last-modified': 'Mon, 06 Jul 2026 10:00:00 GMT' },
+            { etag: undefined, 'last-modified': 'Mon, 06 Jul 2026 10:00:01 GMT' },
+        ],
+    ])
+        test(`one with another ${kind} is loaded again, once; the camera stays`, async () => {
+            host.fault = () => ({ headers: before });
+            const { page, camera } = await openPart();
+            host.fault = () => ({ headers: later });
+            await wantAll(page);
+            await page.getByText('Town was replaced on its server').waitFor();
+            const { frame, session } = await settleWithPoints(page);
+            assert.ok(frame.complete);
+            assert.equal(session.cloudsReloaded, 1);
+            assert.deepEqual(await cameraOf(page), camera);
+            assert.equal(await page.locator('[data-problem]').count(), 0);
+            await page.close();
+        });
+
+    test('one that changes all the time is given up, until somebody asks for it', async () => {
+        const { page, camera } = await openPart();
+        host.fault = ({ number }) => ({ headers: { etag: `"${number}"` } });
+        await wantAll(page);
+        await problem(page, 'stopped', 'replaced while it was being read');
+        host.fault = undefined;
+        await retryAndSee(page);
+        assert.deepEqual(await cameraOf(page), camera);
+        await page.close();
+    });
+
+    for (const [what, fault] of [
+        ['a damaged block', 'flipAt'],
+        ['a block that is cut off', 'cutAt'],
+    ])
+        test(`${what} is asked for once more, then its node is missing and the rest shown`, async () => {
+            const at = Math.floor(host.file.length * 0.6);
+            const isHit = ({ range: [first, last] }) => first <= at && at <= last;
+            host.fault = () => ({ [fault]: at });
+            const { page } = await openCloud();
+            const text = await problem(page, 'incomplete', /\d+ nodes? (is|are) missing; the rest is shown/);
+            const part = await settleWithPoints(page);
+            assert.equal(host.asked.filter(isHit).length, 2);
+            await keepScreenshot(page, `missing-${fault}`);
+            host.fault = undefined;
+            const all = await retryAndSee(page);
+            assert.equal(host.asked.filter(isHit).length, 3);
+            assert.ok(all.nodesDrawn > part.frame.nodesDrawn, text);
+            await page.close();
+        });
+});
+
+describe('servers that refuse, and networks that fail', () => {
+    test('who may not read is asked for a token, which goes with every request', async () => {
+        const isGranted = ({ headers }) => headers.authorization === 'Bearer right';
+        host.fault = (asked) => (isGranted(asked) ? {} : { status: 401 });
+        const { page } = await openCloud();
+        await problem(page, 'stopped', 'wants to know who asks (status 401)');
+        await keepScreenshot(page, 'token');
+        assert.equal(host.asked.length, 1);
+        const give = async (token) => {
+            await page.getByLabel('Token for Town').fill(token);
+            await page.getByLabel('Token for Town').press('Enter');
+        };
+        await give('wrong');
+        await page.getByText('The token that was given is not accepted').waitFor();
+        await give('right');
+        await noProblem(page);
+        assert.ok((await settleWithPoints(page)).frame.complete);
+        assert.equal(host.asked.filter(isGranted).length, host.asked.length - 2);
+        await page.close();
+    });
+
+    test('access that ends while one looks keeps what is here', async () => {
+        const { page, camera } = await openPart();
+        host.fault = () => ({ status: 403 });
+        await wantAll(page);
+        await problem(page, 'stopped', 'refuses access (status 403)');
+        assert.ok((await counters(page)).frame.pointsDrawn > 0);
+        host.fault = undefined;
+        await retryAndSee(page);
+        assert.deepEqual(await cameraOf(page), camera);
+        await page.close();
+    });
+
+    test('a machine that is offline goes on by itself when it is back', async () => {
+        const { page, camera } = await openPart();
+        await page.context().setOffline(true);
+        await wantAll(page);
+        await problem(page, 'retrying', 'this machine is offline');
+        await problem(page, 'stopped', 'this machine is offline');
+        assert.ok((await counters(page)).frame.pointsDrawn > 0);
+        await page.context().setOffline(false);
+        await noProblem(page);
+        assert.ok((await settleWithPoints(page)).frame.complete);
+        assert.deepEqual(await cameraOf(page), camera);
+        await page.close();
+    });
+
+    test('a server that is gone is tried four times, then left', async () => {
+        host.fault = () => ({ gone: true });
+        const { page } = await openCloud();
+        await problem(page, 'stopped', "can't be reached");
+        const asked = host.asked.length;
+        await page.waitForTimeout(1500);
+        assert.equal(host.asked.length, asked);
+        host.fault = undefined;
+        await retryAndSee(page);
+        await page.close();
+    });
+
+    for (const status of [429, 503])
+        test(`a server that answers ${status} is left alone for as long as it asks`, async () => {
+            host.fault = ({ number }) => (number === 1 ? { status, headers: { 'retry-after': '2' } } : {});
+            const { page } = await openCloud();
+            const text = await problem(page, 'retrying', `status ${status}`);
+            assert.match(text, /tried again in [12] s/);
+            await noProblem(page);
+            assert.ok((await settleWithPoints(page)).frame.complete);
+            assert.ok(host.asked[1].at - host.asked[0].at >= 1990);
+            await page.close();
+        });
+});
+
+describe('requests', () => {
+    test('the embedding page prepares them: address, headers, credentials', async () => {
+        host.fault = ({ url, headers }) =>
+            url === '/cloud.stipple?signature=7' && headers['x-visitor'] === 'me' && headers.cookie === 'who=me'
+                ? {}
+                : { status: 403 };
+        const { page } = await openCloud({
+            prepare: async (page) => {
+                await page.context().addCookies([{ name: 'who', value: 'me', url: host.address, sameSite: 'Lax' }]);
+                await page.evaluate(() => {
+                    window.prepared = [];
+                    window.stipple.prepareRequest = async (url, range) => {
+                        window.prepared.push([url, range]);
+                        await new Promise((resolve) => setTimeout(resolve, 5));
+                        return { url: `${url}?signature=7`, headers: { 'X-Visitor': 'me' }, credentials: 'include' };
+                    };
+                });
+            },
+        });
+        assert.ok((await settleWithPoints(page)).frame.complete);
+        const prepared = await page.evaluate(() => window.prepared);
+        assert.equal(prepared.length, host.asked.length);
+        assert.ok(prepared.every(([url, range]) => url === host.address && /^bytes=\d+-\d+$/.test(range)));
+        await page.close();
+    });
+
+    test('a hook that fails is named', async () => {
+        const { page } = await openCloud({
+            prepare: (page) =>
+                page.evaluate(() => {
+                    window.stipple.prepareRequest = () => Promise.reject(new Error('no signature today'));
+                }),
+        });
+        await problem(page, 'retrying', 'no signature today');
+        assert.equal(host.asked.length, 0);
+        await page.evaluate(() => (window.stipple.prepareRequest = undefined));
+        await noProblem(page);
+        assert.ok((await settleWithPoints(page)).frame.complete);
+        await page.close();
+    });
+
+    test('what is taken back is not sent any more, and nothing is read twice', async () => {
+        const { page } = await openPart();
+        assert.equal(bytesAskedTwice(host.asked), 0);
+        host.rate = 40_000;
+        const [asked, sent] = [host.asked.length, host.bytesSent];
+        await wantAll(page);
+        while (host.bytesSent < sent + 60_000) await page.waitForTimeout(20);
+        assert.ok(host.asked.length > asked);
+        const wanted = host.asked.slice(asked).reduce((sum, { range }) => sum + range[1] + 1 - range[0], 0);
+        await page.getByRole('button', { name: 'Close Town' }).click();
+        await page.waitForTimeout(300); // what was in pipes when the connections closed
+        const stopped = host.bytesSent;
+        await page.waitForTimeout(700);
+        assert.equal(host.bytesSent, stopped);
+        assert.ok(host.cutOff > 0);
+        assert.ok(stopped - sent < wanted / 2, `${stopped - sent} of ${wanted} bytes were sent`);
+        const { session } = await counters(page);
+        assert.ok(session.requestsCancelled > 0);
+        assert.ok(session.bytesWasted > 20_000, `${session.bytesWasted} bytes`);
+        await page.close();
+    });
+
+    test('what is on its way counts when the network is measured', async () => {
+        host.rate = 100_000; // of each answer, of which six come at a time
+        const { page } = await openCloud();
+        await settleWithPoints(page);
+        const { session } = await counters(page);
+        assert.ok(session.networkBytesPerSecond > 50_000, `${session.networkBytesPerSecond}`);
+        assert.ok(session.networkBytesPerSecond < 700_000, `${session.networkBytesPerSecond}`);
+        assert.equal(session.bytesFetchedTwice, 0);
+        await page.close();
+    });
+});

@@ -1,0 +1,116 @@
+import { css, html, nothing, type TemplateResult } from 'lit';
+
+import type { CloudProblem } from '../cloud_problems.ts';
+import { ModelElement } from './model_element.ts';
+import { controlStyles } from './shared_styles.ts';
+
+/** What is wrong with clouds, each with what happened, what to do, and the buttons for it. */
+export class ProblemList extends ModelElement {
+    static override styles = [
+        controlStyles,
+        css`
+            :host {
+                display: grid;
+                gap: 8px;
+            }
+            .problem {
+                pointer-events: auto;
+                padding: 10px 14px 12px;
+                background: var(--danger-back);
+                border: 1px solid var(--danger);
+                border-radius: 10px;
+                overflow-wrap: anywhere;
+            }
+            .retrying,
+            .incomplete {
+                background: var(--panel-solid);
+                border-color: var(--line);
+            }
+            p {
+                margin: 0.2rem 0 0;
+            }
+            .advice {
+                color: var(--muted);
+            }
+            .ways,
+            form {
+                display: flex;
+                flex-wrap: wrap;
+                gap: 0.5rem;
+                margin-top: 0.6rem;
+            }
+            label {
+                flex: 1 1 12rem;
+            }
+            input {
+                font: inherit;
+                color: inherit;
+                width: 100%;
+                min-height: 2rem;
+                padding: 0 0.6rem;
+                background: var(--raised);
+                border: 1px solid var(--line);
+                border-radius: 6px;
+            }
+        `,
+    ];
+
+    override render(): TemplateResult[] {
+        return this.model.problems.list().map((problem) => this.renderProblem(problem));
+    }
+
+    private renderProblem(problem: CloudProblem): TemplateResult {
+        const { cloud, name, kind, sentence, advice } = problem;
+        const { problems } = this.model;
+        return html`<section
+            class="problem ${kind}"
+            data-problem=${kind}
+            role=${kind === 'stopped' ? 'alert' : 'status'}
+            aria-label=${this.text('problem', { name })}
+        >
+            <strong>${name}</strong>
+            <p>${sentence}</p>
+            ${advice ? html`<p class="advice" aria-live=${kind === 'retrying' ? 'off' : nothing}>${advice}</p>` : ''}
+            ${problem.wantsToken ? this.renderToken(problem) : ''}
+            <div class="ways">
+                ${kind === 'retrying'
+                    ? ''
+                    : html`<button aria-label=${this.text('problem.retryNamed', { name })} @click=${() => problems.retry(cloud)}>
+                          ${this.text('problem.retry')}
+                      </button>`}
+                ${kind === 'incomplete'
+                    ? html`<button aria-label=${this.text('problem.hideNamed', { name })} @click=${() => problems.hide(problem)}>
+                          ${this.text('page.hide')}
+                      </button>`
+                    : html`<button aria-label=${this.text('problem.closeNamed', { name })} @click=${() => this.model.close(cloud)}>
+                          ${this.text('problem.close')}
+                      </button>`}
+            </div>
+        </section>`;
+    }
+
+    private renderToken({ cloud, name, tokenWasRefused }: CloudProblem): TemplateResult {
+        const give = (event: Event): void => {
+            event.preventDefault();
+            const field = (event.target as HTMLFormElement).elements.namedItem('token') as HTMLInputElement;
+            if (field.value.trim() !== '') this.model.problems.giveToken(cloud, field.value);
+            field.value = '';
+        };
+        return html`${tokenWasRefused ? html`<p>${this.text('problem.tokenRefused')}</p>` : ''}
+            <form @submit=${give}>
+                <label>
+                    <input
+                        name="token"
+                        type="password"
+                        autocomplete="off"
+                        placeholder=${this.text('problem.token')}
+                        aria-label=${this.text('problem.tokenNamed', { name })}
+                    />
+                </label>
+                <button>${this.text('problem.send')}</button>
+            </form>
+            <p class="advice">${this.text('problem.tokenUse')}</p>`;
+    }
+}
+
+customElements.define('stipple-problems', ProblemList);

@@ -1,0 +1,72 @@
+/** What a page makes of a request for bytes of a cloud; what it leaves out stays as it is. */
+export interface PreparedRequest {
+    /** Another address, for example with a signature. Messages and saved scenes keep the cloud's own. */
+    url?: string;
+    headers?: Record<string, string>;
+    /** As of fetch(); 'same-origin' if left out. */
+    credentials?: RequestCredentials;
+}
+
+/**
+ * Called before each request for bytes `range` ("bytes=0-65535") of the cloud at `url`. May take its time: the request
+ * waits, and counts as under way. If it throws, the cloud says why, and is tried again like after a network failure.
+ */
+export type PrepareRequest = (
+    url: string,
+    range: string,
+) => PreparedRequest | undefined | Promise<PreparedRequest | undefined>;
+
+/**
+ * How requests for clouds are sent: as the embedding page prepares them, with the token that a person gave for the
+ * origin. Tokens are kept in memory only, and go to their own origin only.
+ */
+export class Requests {
+    prepare: PrepareRequest | undefined;
+    private readonly tokens = new Map<string, string>(); // by origin
+
+    /** For the server of that address; an empty one forgets it. */
+    setToken(url: string, token: string): void {
+        const { origin } = new URL(url, document.baseURI);
+        if (token === '') this.tokens.delete(origin);
+        else this.tokens.set(origin, token);
+    }
+    hasToken(url: string): boolean {
+        return this.tokens.has(new URL(url, document.baseURI).origin);
+    }
+
+    async prepared(url: string, range: string): Promise<{ url: string; init: RequestInit }> {
+        const made = (await this.prepare?.(url, range)) ?? {};
+        const address = new URL(made.url ?? url, document.baseURI);
+        const token = this.tokens.get(address.origin);
+        const headers = {
+            ...(token !== undefined && { Authorization: `Bearer ${token}` }),
+            ...made.headers,
+            Range: range,
+        };
+        // Browsers' caches serialise ranges of one address and have mixed them up; the viewer has its own.
+        const init: RequestInit = { cache: 'no-store', headers };
+        if (made.credentials !== undefined) init.credentials = made.credentials;
+        return { url: address.href, init };
+    }
+}
+
+/** Whether browsers keep a page that came over https from asking there. */
+export function isMixedContent(url: string): boolean {
+    const { protocol, hostname } = new URL(url);
+    const isOwnMachine = /^(localhost|.*\.localhost|127(\.\d+){3}|\[::1\])$/.test(hostname);
+    return location.protocol === 'https:' && protocol === 'http:' && !isOwnMachine;
+}
+
+/**
+ * After a request that browsers tell nothing of: whether a server of another origin is there, so that the reason
+ * must be that it does not allow this page to read what it answers.
+ */
+export async function isThereButNotAllowed(url: string, signal: AbortSignal): Promise<boolean> {
+    if (new URL(url).origin === location.origin) return false;
+    try {
+        await fetch(url, { method: 'HEAD', mode: 'no-cors', cache: 'no-store', credentials: 'omit', signal });
+        return true;
+    } catch {
+        return false;
+    }
+}
