@@ -35,8 +35,8 @@ struct CloudLoader {
     std::set<std::uint32_t> damagedChunks;                 // by node above; fetched once more
     std::vector<std::uint32_t> lostNodes, lostChunks;      // given up until retry(); chunks by node above
     AttributeNeeds needs;                                  // of the style
-    AttributeNeeds watched;          // of whoever counts what is in view; nodes are drawn without them
-    const KeptBytes* kept = nullptr; // of the session
+    AttributeNeeds watched;    // of whoever counts what is in view; nodes are drawn without them
+    KeptBytes* kept = nullptr; // of the session
     std::optional<std::chrono::steady_clock::time_point> reloadedAt; // its file was replaced
 
     bool ready() const { return state.stage == CloudStage::ready; }

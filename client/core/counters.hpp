@@ -18,6 +18,7 @@ struct FrameCounters {
     std::uint64_t nodesSelected = 0;       // wanted in the picture
     std::uint64_t nodesWaiting = 0;        // wanted, not here yet
     std::uint64_t nodesDrawn = 0;          // here and drawn
+    std::uint64_t nodesDelayed = 0;        // here, but left to the next frame: enough is new in this one
     std::uint64_t pointsConsidered = 0;    // points of nodes in view and large enough, as far as was looked
     std::uint64_t pointsSelected = 0;      // points of selected nodes
     std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
@@ -61,9 +62,11 @@ struct SessionCounters {
     std::uint64_t attributeBytesOffered = 0;
     std::uint64_t attributeBytesFetched = 0;
     std::uint64_t nodesPainted = 0;   // colours of a node worked out: it, its attributes or the style changed
-    std::uint64_t columnsDropped = 0; // unused attributes of a node let go, to make room
-    std::uint64_t cacheBytes = 0;     // now
+    std::uint64_t columnsDropped = 0; // unused attributes of a node let go, to make room or after a while
+    std::uint64_t bytesReused = 0;    // decoded without being fetched: they were here, as they came
+    std::uint64_t cacheBytes = 0;     // decoded nodes now
     std::uint64_t cacheBytesPeak = 0;
+    std::uint64_t compressedBytes = 0; // bytes as they came, now
 };
 
 } // namespace stipple

@@ -90,8 +90,9 @@ struct FramePlan {
     Style style;                 // ranges are resolved: min < max where the mode needs one
     double detailPixels = 0;     // continuous detail: the target spacing in pixels; 0: draw whole prefixes
     std::vector<DrawNode> nodes; // near to far or any order; the picture does not depend on it
-    std::vector<AwaitedNode> awaited; // where points grow until they come (Style::growsWhileLoading)
-    FrameCounters counters;           // the renderer adds passesRun and passesSkipped
+    std::vector<AwaitedNode> awaited;      // where points grow until they come (Style::growsWhileLoading)
+    FrameCounters counters;                // the renderer adds passesRun and passesSkipped
+    std::uint64_t gpuBytes = 128ull << 20; // nodes that are not in the plan stay on the GPU up to so many
 };
 
 } // namespace stipple

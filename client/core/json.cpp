@@ -169,6 +169,9 @@ Result<SessionLimits> detail::readLimits(const json& value, const SessionLimits&
     fields.number("leastCentreWeight", limits.weights.leastCentre, 0, 1);
     fields.number("leastDepthWeight", limits.weights.leastDepth, 0, 1);
     fields.number("cacheBytes", limits.cacheBytes, 1, most);
+    fields.number("compressedBytes", limits.compressedBytes, 0, most);
+    fields.number("gpuBytes", limits.gpuBytes, 0, most);
+    fields.number("uploadBytes", limits.uploadBytes, 0, most);
     fields.number("requestsInFlight", limits.requestsInFlight, 1, 1000);
     fields.number("bytesInFlight", limits.bytesInFlight, 1, most);
     fields.number("mergeGapBytes", limits.mergeGapBytes, 0, most);
@@ -235,6 +238,9 @@ json toJson(const SessionLimits& limits) {
             {"leastCentreWeight", limits.weights.leastCentre},
             {"leastDepthWeight", limits.weights.leastDepth},
             {"cacheBytes", limits.cacheBytes},
+            {"compressedBytes", limits.compressedBytes},
+            {"gpuBytes", limits.gpuBytes},
+            {"uploadBytes", limits.uploadBytes},
             {"requestsInFlight", limits.requestsInFlight},
             {"bytesInFlight", limits.bytesInFlight},
             {"mergeGapBytes", limits.mergeGapBytes},
@@ -252,6 +258,7 @@ json toJson(const FrameCounters& c) {
             {"nodesSelected", c.nodesSelected},
             {"nodesWaiting", c.nodesWaiting},
             {"nodesDrawn", c.nodesDrawn},
+            {"nodesDelayed", c.nodesDelayed},
             {"pointsConsidered", c.pointsConsidered},
             {"pointsSelected", c.pointsSelected},
             {"pointsDrawn", c.pointsDrawn},
@@ -293,8 +300,10 @@ json toJson(const SessionCounters& c) {
             {"attributeBytesFetched", c.attributeBytesFetched},
             {"nodesPainted", c.nodesPainted},
             {"columnsDropped", c.columnsDropped},
+            {"bytesReused", c.bytesReused},
             {"cacheBytes", c.cacheBytes},
-            {"cacheBytesPeak", c.cacheBytesPeak}};
+            {"cacheBytesPeak", c.cacheBytesPeak},
+            {"compressedBytes", c.compressedBytes}};
 }
 
 json toJson(const Error& error) {

@@ -18,9 +18,9 @@ std::vector<std::shared_ptr<const NodeColumns>> CachedNode::columns() const {
     return here;
 }
 
-std::uint64_t CachedNode::sizeBytes() const {
-    std::uint64_t bytes = sizeof *this + compressed.size() + (node ? node->sizeBytes() : 0) +
-                          (paint ? paint->sizeBytes() : 0) + (normals ? normals->sizeBytes() : 0);
+std::uint64_t CachedNode::decodedBytes() const {
+    std::uint64_t bytes = sizeof *this + (node ? node->sizeBytes() : 0) + (paint ? paint->sizeBytes() : 0) +
+                          (normals ? normals->sizeBytes() : 0);
     for (const CachedBlock& cached : blocks)
         bytes += sizeof cached + (cached.columns ? cached.columns->sizeBytes() : 0);
     return bytes;
@@ -31,10 +31,13 @@ CachedNode* NodeCache::find(CacheKey key) {
     return at == entries_.end() ? nullptr : &at->second.node;
 }
 
-CachedNode& NodeCache::obtain(CacheKey key) {
+CachedNode& NodeCache::obtain(CacheKey key, int level) {
     auto [at, added] = entries_.try_emplace(key);
     if (added) {
-        at->second.use = uses_.insert(uses_.begin(), key);
+        at->second.level = level;
+        at->second.turn = ++lastTurn_;
+        at->second.frame = lastFrame_ == 0 ? 0 : lastFrame_ - 1; // no frame has used it yet
+        uses_.insert(useOf(key, at->second));
         recount(key);
     }
     return at->second.node;
@@ -44,30 +47,53 @@ void NodeCache::touch(CacheKey key, std::uint64_t frame) {
     auto at = entries_.find(key);
     if (at == entries_.end())
         return;
-    at->second.frame = frame;
-    uses_.splice(uses_.begin(), uses_, at->second.use);
+    uses_.erase(useOf(key, at->second));
+    at->second.frame = lastFrame_ = frame;
+    at->second.turn = ++lastTurn_;
+    uses_.insert(useOf(key, at->second));
 }
 
 void NodeCache::recount(CacheKey key) {
     auto at = entries_.find(key);
     if (at == entries_.end())
         return;
-    bytes_ -= at->second.bytes;
-    at->second.bytes = at->second.node.sizeBytes();
-    bytes_ += at->second.bytes;
+    Entry& entry = at->second;
+    bytes_ -= entry.bytes;
+    compressed_ -= entry.compressed;
+    entry.bytes = entry.node.decodedBytes();
+    entry.compressed = entry.node.compressed.size();
+    bytes_ += entry.bytes;
+    compressed_ += entry.compressed;
     peak_ = std::max(peak_, bytes_);
 }
 
-std::vector<CacheKey> NodeCache::evict(std::uint64_t limitBytes, std::uint64_t frame) {
-    std::vector<CacheKey> evicted;
-    while (bytes_ > limitBytes && !uses_.empty()) {
-        auto at = entries_.find(uses_.back());
+std::vector<NodeCache::Evicted> NodeCache::evict(std::uint64_t limitBytes, std::uint64_t frame) {
+    std::vector<Evicted> evicted;
+    for (auto use = uses_.begin(); bytes_ > limitBytes && use != uses_.end();) {
+        auto at = entries_.find(std::get<CacheKey>(*use));
+        ++use;
         if (at->second.frame == frame)
-            break; // the list is in order of use: so are all before it
-        evicted.push_back(at->first);
+            continue;
+        evicted.push_back({at->first, std::move(at->second.node.compressed)});
         drop(at);
     }
     return evicted;
+}
+
+std::size_t NodeCache::dropCompressed(std::uint64_t limitBytes, std::uint64_t frame) {
+    std::size_t nodes = 0;
+    for (auto use = uses_.begin(); compressed_ > limitBytes && use != uses_.end(); ++use) {
+        CacheKey key = std::get<CacheKey>(*use);
+        Entry& entry = entries_.at(key);
+        CachedNode& node = entry.node;
+        if (node.compressed.empty() || entry.frame == frame)
+            continue; // who drops what is being refined would fetch it again and again
+        node.compressed = {};
+        node.strataFetched = 0;
+        recount(key);
+        ++nodes;
+    }
+    return nodes;
 }
 
 void NodeCache::erase(CacheKey key) {
@@ -83,7 +109,8 @@ void NodeCache::eraseCloud(std::uint32_t cloud) {
 
 std::map<CacheKey, NodeCache::Entry>::iterator NodeCache::drop(std::map<CacheKey, Entry>::iterator at) {
     bytes_ -= at->second.bytes;
-    uses_.erase(at->second.use);
+    compressed_ -= at->second.compressed;
+    uses_.erase(useOf(at->first, at->second));
     return entries_.erase(at);
 }
 

@@ -1,5 +1,7 @@
 #include "client/core/node_decoding.hpp"
 
+#include <utility>
+
 namespace stipple {
 
 namespace {
@@ -17,15 +19,20 @@ NodeDecoding::~NodeDecoding() {
 
 void NodeDecoding::takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& loaded) {
     CacheKey key{cloud.state.id, node};
-    CachedNode& cached = cache_.obtain(key);
-    if (cached.strataFetched != loaded.item.fromStrata)
-        return; // what these bytes continue was dropped in between
+    const NodeEntry& entry = cloud.hierarchy.node(node).entry;
+    CachedNode& cached = cache_.obtain(key, entry.key.level);
+    if (cached.strataFetched != loaded.item.fromStrata) {
+        // What these bytes continue was dropped in between.
+        cloud.kept->add(cloud.state.id, entry.strataRange(loaded.item.fromStrata).end(),
+                        std::move(*loaded.bytes));
+        return;
+    }
     if (cached.compressed.empty())
         cached.compressed = std::move(*loaded.bytes);
     else
         cached.compressed.insert(cached.compressed.end(), loaded.bytes->begin(), loaded.bytes->end());
-    if (cached.strataFetched == 0)
-        for (std::uint32_t bytes : cloud.hierarchy.node(node).entry.attributeBytes)
+    if (cached.strataFetched == 0 && !cached.node)
+        for (std::uint32_t bytes : entry.attributeBytes)
             counters_.attributeBytesOffered += bytes;
     cached.strataFetched = loaded.item.strata;
     cache_.recount(key);
@@ -34,12 +41,14 @@ void NodeDecoding::takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& l
 }
 
 void NodeDecoding::takeBlock(CloudLoader& cloud, std::uint32_t node, int block, Bytes bytes) {
-    CachedNode& cached = cache_.obtain({cloud.state.id, node});
+    const NodeEntry& entry = cloud.hierarchy.node(node).entry;
+    CachedNode& cached = cache_.obtain({cloud.state.id, node}, entry.key.level);
     counters_.attributeBytesFetched += bytes.size();
     if (cached.block(block))
         return; // here, or on its way
+    cloud.kept->add(cloud.state.id, entry.attributeRange(static_cast<std::size_t>(block)).offset, bytes);
     DecodeJob job;
-    job.entry = cloud.hierarchy.node(node).entry;
+    job.entry = entry;
     job.strata = 0;
     job.block = block;
     job.attributes = std::move(bytes);
@@ -59,12 +68,12 @@ NodeDecoding::Taken NodeDecoding::takeAnswers(CloudMap& clouds) {
     for (Answer& answer : answers) {
         --pending_;
         bytesPending_ -= answer.bytes;
+        taken.changed = true; // also where only something else can begin now
         auto at = clouds.find(answer.key.cloud);
         CachedNode* cached = cache_.find(answer.key);
         if (at == clouds.end() || !at->second.ready() || !cached)
             continue; // removed, failed or evicted meanwhile
         CloudLoader& cloud = at->second;
-        taken.changed = true;
         if (answer.strata > 0)
             cached->decodingPicture = false;
         if (!answer.node.ok()) {
@@ -107,8 +116,10 @@ void NodeDecoding::decode(CloudLoader& cloud, std::uint32_t node, DecodeJob job)
 }
 
 bool NodeDecoding::takeFailure(CloudLoader& cloud, const Answer& answer, CachedNode& cached) {
+    // The bytes may have been damaged on their way: once more from the start.
+    const NodeEntry& entry = cloud.hierarchy.node(answer.key.node).entry;
+    cloud.kept->erase(cloud.state.id, {entry.offsetBytes, entry.sizeBytes()});
     if (answer.strata > 0) {
-        // The bytes may have been damaged on their way: once more from the start.
         cached.compressed = {};
         cached.strataFetched = 0;
     } else {
@@ -127,9 +138,12 @@ void NodeDecoding::takeDecodedPicture(CloudLoader& cloud, Answer& answer, Cached
     ResidentNode node = std::move(*answer.node);
     bool complete = node.pointCount == node.totalPoints;
     cached.node = std::make_shared<const ResidentNode>(std::move(node));
-    if (complete) {
+    if (complete && !cached.compressed.empty()) {
         cached.strataFetched = strataCount; // strata may be empty
-        cached.compressed = {};
+        cloud.kept->add(cloud.state.id, cloud.hierarchy.node(answer.key.node).entry.offsetBytes,
+                        std::exchange(cached.compressed, {}));
+    } else if (complete) {
+        cached.strataFetched = strataCount;
     } else if (cached.strataFetched > answer.strata) {
         decodePicture(cloud, answer.key.node, cached);
     }

@@ -10,7 +10,8 @@ namespace {
 // With several things to wait for, each is waited for this long in turn.
 constexpr std::chrono::milliseconds waitSlice{2};
 
-constexpr std::uint64_t keptBytes = 32 << 20; // of gaps
+// Decoded at a time of what is here already; the rest is wanted again when some of it is done.
+constexpr std::uint64_t mostLocalBytes = 4 << 20;
 
 // A file that is another one now: nothing of its cloud can be used any more.
 bool isFatal(const Error& error) {
@@ -151,8 +152,11 @@ void SessionLoading::want(std::vector<LoadItem> items) {
     auto here = std::stable_partition(items.begin(), items.end(), [](const LoadItem& item) {
         return item.range.size > 0 || item.key.kind == LoadKind::opening;
     });
-    for (auto item = here; item != items.end(); ++item) {
+    std::uint64_t working = decoding_.bytesPending();
+    for (auto item = here; item != items.end() && working < mostLocalBytes; ++item) {
         Bytes bytes = std::move(item->head);
+        working += bytes.size();
+        counters_.bytesReused += bytes.size();
         local_.push_back({std::move(*item), std::move(bytes)});
     }
     items.erase(here, items.end());
@@ -183,7 +187,6 @@ SessionLoading::Arrivals SessionLoading::takeArrivals() {
         loaded.push_back(std::move(more));
     for (LoadedGap& gap : queue_.takeGaps())
         kept_.add(gap.cloud, gap.offset, std::move(gap.bytes));
-    kept_.limit(keptBytes);
     for (Loaded& one : loaded)
         takeLoaded(one, arrivals);
     // An inline decoder has answered by now.
@@ -273,6 +276,29 @@ void SessionLoading::reload(CloudLoader& cloud, Arrivals& arrivals) {
     cloud.reloadedAt = now_();
     ++cloud.state.reloads;
     ++counters_.cloudsReloaded;
+}
+
+void SessionLoading::limitMemory(const SessionLimits& limits, std::uint64_t frame) {
+    for (NodeCache::Evicted& gone : cache_.evict(limits.cacheBytes, frame)) {
+        ++counters_.nodesEvicted;
+        auto cloud = clouds_.find(gone.key.cloud);
+        if (cloud == clouds_.end())
+            continue;
+        cloud->second.updateResidency(gone.key.node, nullptr);
+        kept_.add(gone.key.cloud, cloud->second.hierarchy.node(gone.key.node).entry.offsetBytes,
+                  std::move(gone.compressed));
+    }
+    std::uint64_t refining = cache_.compressedBytes();
+    kept_.limit(limits.compressedBytes - std::min(limits.compressedBytes, refining));
+    if (refining > limits.compressedBytes)
+        cache_.dropCompressed(limits.compressedBytes, frame);
+}
+
+std::uint64_t SessionLoading::compressedBytes() const {
+    std::uint64_t bytes = kept_.sizeBytes() + cache_.compressedBytes();
+    for (const auto& [id, cloud] : clouds_)
+        bytes += cloud.fetched.sizeBytes();
+    return bytes;
 }
 
 // --- failing and letting go ----------------------------------------------------------------------------

@@ -50,6 +50,9 @@ class SessionLoading {
     };
     // Works off what was delivered.
     Arrivals takeArrivals();
+    // Drops what is over the limits, but nothing of nodes that frame `frame` has used.
+    void limitMemory(const SessionLimits& limits, std::uint64_t frame);
+    std::uint64_t compressedBytes() const;
 
     // Replaces what is wanted but not on its way, most urgent first.
     void want(std::vector<LoadItem> items);

@@ -7,6 +7,7 @@
 #include "client/core/plan_painter.hpp"
 #include "client/core/selection.hpp"
 #include "client/core/session_loading.hpp"
+#include "client/core/upload_gate.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ namespace {
 class Session final : public ViewSession {
   public:
     Session(NodeDecoder& decoder, const SessionLimits& limits, const Now& now)
-        : limits_(limits), loading_(decoder, counters_, now), painter_(counters_) {}
+        : limits_(limits), now_(now), loading_(decoder, counters_, now), painter_(counters_) {}
 
     CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) override {
         dirty_ = true;
@@ -101,12 +102,15 @@ class Session final : public ViewSession {
         for (CloudId id : arrivals.failed)
             forget(id);
         bool selected = dirty_;
+        if (unusedSince_ && now_() - *unusedSince_ > unusedLife)
+            dropUnused();
         if (dirty_)
             selectAndWant();
         ++(selected ? counters_.selectionsRun : counters_.selectionsSkipped);
         loading_.start(limits_);
-        bool drawn = (selected || planDirty_) && renewPlan();
-        planDirty_ = false;
+        bool isDue = selected || planDirty_;
+        planDirty_ = false; // unless something is left to the next frame
+        bool drawn = isDue && renewPlan();
         ++(drawn ? counters_.framesDrawn : counters_.framesSkipped);
         return drawn;
     }
@@ -120,8 +124,9 @@ class Session final : public ViewSession {
 
     SessionCounters counters() const override {
         SessionCounters now = counters_;
-        now.cacheBytes = loading_.cache().sizeBytes();
-        now.cacheBytesPeak = loading_.cache().peakBytes();
+        now.cacheBytes = loading_.cache().decodedBytes();
+        now.cacheBytesPeak = loading_.cache().decodedBytesPeak();
+        now.compressedBytes = loading_.compressedBytes();
         now.networkBytesPerSecond = loading_.network().bytesPerSecond();
         now.networkDelaySeconds = loading_.network().delaySeconds();
         return now;
@@ -244,13 +249,9 @@ class Session final : public ViewSession {
         // Least recently used are then the finest first, the root last.
         for (auto node = selection_.nodes.rbegin(); node != selection_.nodes.rend(); ++node)
             loading_.cache().touch(cacheKey(*node), frame_);
-        if (loading_.cache().sizeBytes() > limits_.cacheBytes)
+        if (loading_.cache().decodedBytes() > limits_.cacheBytes)
             dropUnused();
-        for (CacheKey key : loading_.cache().evict(limits_.cacheBytes, frame_)) {
-            ++counters_.nodesEvicted;
-            if (auto cloud = loading_.clouds().find(key.cloud); cloud != loading_.clouds().end())
-                cloud->second.updateResidency(key.node, nullptr);
-        }
+        loading_.limitMemory(limits_, frame_);
         wantLoads();
     }
 
@@ -264,6 +265,7 @@ class Session final : public ViewSession {
             if (needs == cloud.needs)
                 continue;
             cloud.needs = std::move(needs);
+            unusedSince_ = now_();
             for (std::uint32_t node = 0; node < cloud.residency.size(); ++node)
                 cloud.updateResidency(node, loading_.cache().find({id, node}));
         }
@@ -288,8 +290,10 @@ class Session final : public ViewSession {
                columnBytes(cloud.needs, metadata) + (cloud.needs.exactBlock >= 0 ? 4u : 0u);
     }
 
-    // Attributes that the style does not use are kept while there is room, and are the first to go.
+    // Attributes that the style does not use are kept for a while, and are the first to go where room is
+    // short.
     void dropUnused() {
+        unusedSince_.reset();
         loading_.cache().visit([&](CacheKey key, CachedNode& cached) {
             auto cloud = loading_.clouds().find(key.cloud);
             if (cloud == loading_.clouds().end())
@@ -430,8 +434,10 @@ class Session final : public ViewSession {
         std::vector<std::shared_ptr<const CloudMetadata>> metadata;
         for (CloudId id : selectionIds_)
             metadata.push_back(loading_.clouds().at(id).opened.metadata);
+        next.gpuBytes = limits_.gpuBytes;
         next.style = resolvedStyle(style_, metadata);
         painter_.setStyle(next.style);
+        UploadGate uploads(plan_, limits_.uploadBytes);
         next.detailPixels = selection_.counters.detailPixels;
         next.counters = selection_.counters;
         next.counters.passesRun = plan_.counters.passesRun;
@@ -454,17 +460,32 @@ class Session final : public ViewSession {
                 next.counters.pointsDrawn -= selected.drawPoints;
                 continue;
             }
+            auto [isNow, before] = uploads.judge(cloud.state.id, *cached->node);
+            std::uint32_t points = selected.drawPoints;
+            if (!isNow) {
+                points = before ? std::min(points, before->node->pointCount) : 0;
+                ++next.counters.nodesDelayed;
+                next.counters.pointsDrawn -= selected.drawPoints - points;
+            }
+            if (points == 0) {
+                --next.counters.nodesDrawn;
+                continue;
+            }
             next.nodes.push_back(
-                planNode(cached->node, selected.drawPoints, *cloud.opened.metadata, view_.eye));
+                planNode(isNow ? cached->node : before->node, points, *cloud.opened.metadata, view_.eye));
             next.nodes.back().cloud = cloud.state.id;
             next.nodes.back().density = cloud.hierarchy.densityOf(selected.node);
-            next.nodes.back().paint = cached->paint;
+            next.nodes.back().paint = isNow ? cached->paint : before->paint;
             if (drawsDiscs())
-                next.nodes.back().normals = cached->normals;
+                next.nodes.back().normals = isNow ? cached->normals : before->normals;
             next.counters.pointsHidden += cached->paint ? cached->paint->hidden : 0;
             next.counters.nodesExact += exact;
         }
         next.awaited = awaitedNodes();
+        if (next.counters.nodesDelayed > 0) {
+            planDirty_ = true;
+            next.counters.complete = false;
+        }
         bool differs = !drawnOnce_ || !samePicture(next, plan_);
         drawnOnce_ = true;
         plan_ = std::move(next);
@@ -514,7 +535,10 @@ class Session final : public ViewSession {
         dirty_ = true;
     }
 
+    static constexpr std::chrono::seconds unusedLife{30}; // of attributes that the style has done with
+
     SessionLimits limits_;
+    const Now now_;
     Camera camera_;
     Style style_;
     int width_ = 1280, height_ = 720;
@@ -529,6 +553,7 @@ class Session final : public ViewSession {
     bool dirty_ = true;      // a selection could come out differently
     bool planDirty_ = false; // the style changed in what shows only
     std::uint64_t frame_ = 0;
+    std::optional<std::chrono::steady_clock::time_point> unusedSince_; // something may be
     ViewTransform view_;
     Selection selection_;
     std::vector<CloudId> selectionIds_; // of selection_'s cloud indices

@@ -31,7 +31,12 @@ struct SessionLimits {
     PriorityWeights weights;               // what matters more than its size says (priority_weights.hpp)
     // What a frame may take while the camera moves (frame_time_controller.hpp); 0: as long as it takes.
     double frameMilliseconds = 0;
-    std::uint64_t cacheBytes = 512ull << 20; // decoded nodes
+    // What may be held; what the picture needs is held all the same. Least recently used goes first.
+    std::uint64_t cacheBytes = 512ull << 20;      // decoded nodes
+    std::uint64_t compressedBytes = 128ull << 20; // of files as they came: to refine nodes, and decode again
+    std::uint64_t gpuBytes = 128ull << 20;        // of nodes on the GPU, beside what is drawn
+    // New nodes that one frame shows; further ones wait for the next. 0: all at once.
+    std::uint64_t uploadBytes = 0;
     // At most; what is right for the network within them is measured (load_limits.hpp).
     int requestsInFlight = 6; // a browser's connections to one host
     std::uint64_t bytesInFlight = 32ull << 20;

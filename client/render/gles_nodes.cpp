@@ -69,20 +69,16 @@ void NodeBuffers::bindNormals(Entry& entry, const DrawNode& drawn) {
     }
 }
 
-bool NodeBuffers::endFrame() {
+bool NodeBuffers::endFrame(std::uint64_t limitBytes) {
+    std::uint64_t limit = boundInFrame_ > 0 ? limitBytes : 0;
     std::vector<std::pair<std::uint64_t, std::uint64_t>> idle; // last frame, id
-    std::uint64_t idleBytes = 0;
-    for (const auto& [id, entry] : entries_)
-        if (entry.lastFrame != frame_) {
-            idle.emplace_back(entry.lastFrame, id);
-            idleBytes += entry.bytes;
-        }
-    std::uint64_t limit = boundInFrame_ > 0 ? maxIdleNodeBytes : 0;
-    if (idleBytes > limit)
-        std::sort(idle.begin(), idle.end());
-    for (std::size_t i = 0; i < idle.size() && idleBytes > limit; ++i) {
+    if (bytes_ > limit)
+        for (const auto& [id, entry] : entries_)
+            if (entry.lastFrame != frame_)
+                idle.emplace_back(entry.lastFrame, id);
+    std::sort(idle.begin(), idle.end());
+    for (std::size_t i = 0; i < idle.size() && bytes_ > limit; ++i) {
         auto entry = entries_.find(idle[i].second);
-        idleBytes -= entry->second.bytes;
         bytes_ -= entry->second.bytes;
         entries_.erase(entry);
     }

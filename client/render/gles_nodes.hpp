@@ -1,6 +1,5 @@
 // The nodes on the GPU: a vertex array and buffers for each ResidentNode, keyed by its id; the colours as
-// they are painted. Nodes that are not drawn are kept up to a limit in bytes, least recently
-// drawn first to go.
+// they are painted. Nodes that are not drawn are kept while there is room, least recently drawn first to go.
 #pragma once
 
 #include "client/render/gles_objects.hpp"
@@ -10,8 +9,6 @@
 #include <unordered_map>
 
 namespace stipple::gles {
-
-inline constexpr std::uint64_t maxIdleNodeBytes = 64ull << 20;
 
 // Locations of points.vert.glsl.
 enum PointAttribute : GLuint {
@@ -27,9 +24,9 @@ class NodeBuffers {
     // time.
     void bind(const DrawNode& drawn);
 
-    // Ends a frame: frees nodes that bind() has not seen in it, as far as the limit asks. A frame without
-    // nodes frees everything. Returns whether something was uploaded since the last call.
-    bool endFrame();
+    // Ends a frame: frees nodes that bind() has not seen in it until all take at most `limitBytes`. A frame
+    // without nodes frees everything. Returns whether something was uploaded since the last call.
+    bool endFrame(std::uint64_t limitBytes);
 
     std::uint64_t bytes() const { return bytes_; }
 

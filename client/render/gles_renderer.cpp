@@ -101,7 +101,7 @@ class Gles3Renderer final : public GlesRenderer {
         plan.counters.passesSkipped += edl.enabled ? 0 : 1;
         glBindVertexArray(0);
         // Asking for errors waits for the GPU in browsers, so only frames that could run out of memory do.
-        return nodes_.endFrame() ? checkGl("uploading points") : Status();
+        return nodes_.endFrame(plan.gpuBytes) ? checkGl("uploading points") : Status();
     }
 
     Result<std::vector<float>> distances(const FramePlan& plan) override {
@@ -110,7 +110,7 @@ class Gles3Renderer final : public GlesRenderer {
         STIPPLE_CHECK(points_.resize(plan.width, plan.height));
         bool late = expandsLate(plan, frame, expansionCosts);
         STIPPLE_CHECK(drawPoints(plan, frame, late, points_.framebuffer.id()));
-        nodes_.endFrame();
+        nodes_.endFrame(plan.gpuBytes);
         return depthReader_.read(frame, points_.depth.id());
     }
 

@@ -26,9 +26,17 @@ Error contextError() {
             "switch hardware acceleration on, or use another browser"};
 }
 
+// A frame that brings more to the GPU than this is late on many machines.
+SessionLimits pageLimits() {
+    SessionLimits limits;
+    limits.uploadBytes = 4 << 20;
+    return limits;
+}
+
 } // namespace
 
-Viewer::Viewer() : decoder_(std::make_unique<WorkerDecoder>()), session_(ViewSession::create(*decoder_)) {
+Viewer::Viewer()
+    : decoder_(std::make_unique<WorkerDecoder>()), session_(ViewSession::create(*decoder_, pageLimits())) {
     session_->setViewport(width_, height_);
 }
 
@@ -222,6 +230,8 @@ bool Viewer::frame() {
         return false;
     drawAgain_ = false;
     drawn_ = session_->plan();
+    if (drawn_.counters.nodesDelayed > 0)
+        stippleHostWake(); // they come with the next frame
     Status status = renderer_->draw(drawn_);
     drawError_ = status.ok() ? std::nullopt : std::optional(status.error());
     return true;

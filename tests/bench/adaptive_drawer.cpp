@@ -53,7 +53,7 @@ Status AdaptiveDrawer::drawByOctree(const FramePlan& plan, unsigned target) {
         glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(node.pointCount));
     }
     glBindVertexArray(0);
-    nodes_.endFrame();
+    nodes_.endFrame(plan.gpuBytes);
     return gles::checkGl("drawing by the octree texture");
 }
 
@@ -78,7 +78,7 @@ Status AdaptiveDrawer::drawBatches(const PointBatches& batches, unsigned target)
             glDrawArrays(GL_POINTS, static_cast<GLint>(run.first), static_cast<GLsizei>(run.count));
     }
     glBindVertexArray(0);
-    nodes_.endFrame();
+    nodes_.endFrame(plan.gpuBytes);
     return gles::checkGl("drawing batches");
 }
 

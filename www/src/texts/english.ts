@@ -53,6 +53,7 @@ export const english = {
     'counters.frame': 'Frame',
     'counters.session': 'Session',
     'counters.memory': 'Memory',
+    'counters.ofLimit': '{used} of {limit}',
 
     'clouds': 'Clouds',
     'clouds.more': 'More clouds…',

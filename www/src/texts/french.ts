@@ -51,6 +51,7 @@ export const french = translation({
     'counters.frame': 'Image',
     'counters.session': 'Session',
     'counters.memory': 'Mémoire',
+    'counters.ofLimit': '{used} sur {limit}',
 
     'clouds': 'Nuages',
     'clouds.more': 'Autres nuages…',

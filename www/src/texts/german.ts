@@ -51,6 +51,7 @@ export const german = translation({
     'counters.frame': 'Bild',
     'counters.session': 'Sitzung',
     'counters.memory': 'Speicher',
+    'counters.ofLimit': '{used} von {limit}',
 
     'clouds': 'Punktwolken',
     'clouds.more': 'Weitere Punktwolken…',

@@ -51,6 +51,7 @@ export const japanese = translation({
     'counters.frame': 'フレーム',
     'counters.session': 'セッション',
     'counters.memory': 'メモリー',
+    'counters.ofLimit': '{limit} 中 {used}',
 
     'clouds': '点群',
     'clouds.more': 'ほかの点群…',

@@ -88,6 +88,9 @@ export interface Limits {
     leastCentreWeight: number;
     leastDepthWeight: number;
     cacheBytes: number;
+    compressedBytes: number;
+    gpuBytes: number;
+    uploadBytes: number;
     requestsInFlight: number;
     bytesInFlight: number;
     mergeGapBytes: number;

@@ -50,6 +50,64 @@ TEST_CASE("the oldest kept bytes go first, and those of a cloud with it") {
     CHECK(kept.sizeBytes() == 0);
 }
 
+TEST_CASE("kept bytes that were used lately stay, the others go first") {
+    KeptBytes kept;
+    for (std::uint64_t i = 0; i < 4; ++i)
+        kept.add(1, i * 100, numbered(i * 100, 100));
+    Bytes used;
+    kept.append(1, {20, 10}, used);
+    kept.limit(200);
+    CHECK(kept.headBytes(1, {0, 100}) == 100);
+    CHECK(kept.headBytes(1, {100, 100}) == 0);
+    CHECK(kept.headBytes(1, {200, 100}) == 0);
+    CHECK(kept.headBytes(1, {300, 100}) == 100);
+}
+
+TEST_CASE("what is kept again takes no more room, and a longer part the place of shorter ones") {
+    KeptBytes kept;
+    kept.add(1, 100, numbered(100, 50));
+    kept.add(1, 110, numbered(110, 20));
+    CHECK(kept.sizeBytes() == 50);
+    kept.add(1, 170, numbered(170, 10));
+    kept.add(1, 100, numbered(100, 90));
+    CHECK(kept.sizeBytes() == 90);
+    CHECK(kept.headBytes(1, {100, 200}) == 90);
+    kept.add(1, 150, numbered(150, 100)); // over the end of one
+    CHECK(kept.headBytes(1, {100, 200}) == 150);
+    Bytes bytes;
+    kept.append(1, {100, 150}, bytes);
+    CHECK(bytes == numbered(100, 150));
+    kept.erase(1, {245, 3}); // damaged
+    CHECK(kept.headBytes(1, {100, 200}) == 90);
+    CHECK(kept.headBytes(1, {200, 10}) == 0);
+    CHECK(kept.sizeBytes() == 90);
+}
+
+TEST_CASE("kept bytes are what they were, in whatever order they come and go") {
+    std::mt19937 random(5);
+    KeptBytes kept;
+    for (int i = 0; i < 3000; ++i) {
+        std::uint64_t offset = random() % 600;
+        switch (random() % 4) {
+        case 0:
+            kept.limit(random() % 800);
+            break;
+        case 1:
+            kept.erase(1, {offset, random() % 20});
+            break;
+        default:
+            kept.add(1, offset, numbered(offset, random() % 90));
+        }
+        ByteRange asked{random() % 600, random() % 200};
+        asked.size = kept.headBytes(1, asked);
+        Bytes bytes;
+        kept.append(1, asked, bytes);
+        REQUIRE(bytes == numbered(asked.offset, static_cast<std::size_t>(asked.size)));
+    }
+    kept.limit(0);
+    CHECK(kept.sizeBytes() == 0);
+}
+
 TEST_CASE("a set of ranges counts what it is given twice, as a set of bytes does") {
     std::mt19937 random(3);
     for (int round = 0; round < 50; ++round) {

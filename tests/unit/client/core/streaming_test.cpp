@@ -8,6 +8,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <set>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -383,6 +384,122 @@ TEST_CASE("a node that stays damaged is counted as missing, and asked for anew b
     CHECK(viewer.state().nodesMissing == 0);
     CHECK_FALSE(viewer.state().lastLoss);
     CHECK(viewer.pointsDrawn() == bigCloud().metadata.pointCount);
+}
+
+TEST_CASE("decoded nodes that had to go are decoded again from the bytes they came as, within both limits") {
+    SessionLimits limits;
+    limits.cacheBytes = 1'500'000; // of some 5 MB
+    Viewer viewer(wideCloud(), network(50, 20ms), limits);
+    std::vector<Camera> places;
+    for (int i = 0; i < 6; ++i)
+        places.push_back(viewer.near(0.5 + 0.4 * std::sin(i), 0.5 + 0.4 * std::cos(i)));
+    for (const Camera& place : places) {
+        viewer.session->setCamera(place);
+        REQUIRE(viewer.run());
+    }
+    CHECK(viewer.counters().nodesEvicted > 0);
+    CHECK(viewer.counters().cacheBytes <= limits.cacheBytes + 50'000); // and what nodes take beside points
+    std::uint64_t requests = viewer.net.counters().requests, decoded = viewer.counters().nodesDecoded;
+    std::uint64_t reused = viewer.counters().bytesReused;
+    for (const Camera& place : places) {
+        viewer.session->setCamera(place);
+        REQUIRE(viewer.run());
+    }
+    CHECK(viewer.net.counters().requests == requests);
+    CHECK(viewer.counters().nodesDecoded > decoded);
+    CHECK(viewer.counters().bytesReused > reused);
+    CHECK(viewer.counters().bytesFetchedTwice == 0);
+
+    SECTION("less room for them is kept, too, and costs requests") {
+        limits.compressedBytes = 300'000;
+        viewer.session->setLimits(limits);
+        REQUIRE(viewer.run());
+        CHECK(viewer.counters().compressedBytes <=
+              limits.compressedBytes + 100'000); // and what opened the cloud
+        for (const Camera& place : places) {
+            viewer.session->setCamera(place);
+            REQUIRE(viewer.run());
+        }
+        CHECK(viewer.net.counters().requests > requests);
+        CHECK(viewer.counters().compressedBytes <= limits.compressedBytes + 100'000);
+        CHECK(viewer.session->recentErrors().empty());
+    }
+    SECTION("with none at all every picture still comes, whole") {
+        limits.compressedBytes = 0;
+        viewer.session->setLimits(limits);
+        for (const Camera& place : places) {
+            viewer.session->setCamera(place);
+            REQUIRE(viewer.run());
+            CHECK(viewer.session->plan().counters.complete);
+        }
+        CHECK(viewer.session->recentErrors().empty());
+    }
+    SECTION("a closed cloud gives all of it back") {
+        viewer.session->removeCloud(viewer.state().id);
+        viewer.run();
+        CHECK(viewer.counters().cacheBytes == 0);
+        CHECK(viewer.counters().compressedBytes == 0);
+        CHECK(viewer.session->plan().nodes.empty());
+    }
+}
+
+TEST_CASE("attributes that nothing uses any more are let go after a while, and come back without a request") {
+    Viewer viewer(bigCloud());
+    REQUIRE(viewer.run());
+    Style byIntensity;
+    byIntensity.colourMode = ColourMode::intensity;
+    viewer.session->setStyle(byIntensity);
+    REQUIRE(viewer.run());
+    std::uint64_t with = viewer.counters().cacheBytes, requests = viewer.net.counters().requests;
+    viewer.session->setStyle({});
+    REQUIRE(viewer.run());
+    CHECK(viewer.counters().columnsDropped == 0);
+    viewer.net.advance(29s);
+    viewer.session->update();
+    CHECK(viewer.counters().columnsDropped == 0);
+    viewer.net.advance(2s);
+    viewer.session->update();
+    CHECK(viewer.counters().columnsDropped == bigCloud().nodes.size());
+    CHECK(viewer.counters().cacheBytes <= with - 2 * bigCloud().metadata.pointCount);
+    viewer.session->setStyle(byIntensity);
+    REQUIRE(viewer.run());
+    CHECK(viewer.pointsDrawn() == bigCloud().metadata.pointCount);
+    CHECK(viewer.net.counters().requests == requests);
+}
+
+TEST_CASE("a frame brings no more that is new than its limit, and the next ones the rest") {
+    Viewer viewer(bigCloud());
+    REQUIRE(viewer.run());
+    Camera away = viewer.overview();
+    away.target = away.position + Vec3d{0, 0, 1000};
+    viewer.session->setCamera(away);
+    REQUIRE(viewer.run());
+    REQUIRE(viewer.pointsDrawn() == 0);
+    SessionLimits limits = viewer.session->limits();
+    limits.uploadBytes = 600'000; // two nodes of 20,000 points
+    viewer.session->setLimits(limits);
+    viewer.session->setCamera(viewer.overview());
+    std::set<std::uint64_t> shown;
+    std::uint64_t frames = 0, most = 0, delayed = 0;
+    auto look = [&] {
+        std::uint64_t bytes = 0;
+        for (const DrawNode& node : viewer.session->plan().nodes)
+            if (shown.insert(node.node->id).second)
+                bytes += 12 * std::uint64_t{node.node->pointCount};
+        most = std::max(most, bytes);
+        delayed += viewer.session->plan().counters.nodesDelayed;
+        ++frames;
+    };
+    for (int i = 0; i < 100 && !viewer.session->settled(); ++i)
+        if (viewer.session->update())
+            look();
+    REQUIRE(viewer.session->settled());
+    CHECK(viewer.pointsDrawn() == bigCloud().metadata.pointCount);
+    CHECK(viewer.session->plan().counters.complete);
+    CHECK(delayed > 0);
+    CHECK(most <= limits.uploadBytes);
+    CHECK(frames == 11); // for 21 nodes
+    CHECK_FALSE(viewer.session->update());
 }
 
 TEST_CASE(

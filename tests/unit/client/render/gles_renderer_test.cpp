@@ -186,17 +186,25 @@ TEST_CASE("nodes that left the view are kept up to a limit, least recently drawn
         return;
     std::uint64_t bare = gles.renderer->gpuBytes();
     TestNode big = randomNode(9, 100, 10, {-5, -5, -5}, 0.01);
-    big.points.resize(2'000'000); // 24 MB each: two of them fit the 64 MiB of nodes not drawn
+    big.points.resize(2'000'000); // 24 MB each: two that are not drawn fit beside the one that is
     big.hasIntensity = false;
     std::vector<FramePlan> plans;
     for (int i = 0; i < 4; ++i)
         plans.push_back(testPlan({big}, {}, plainStyle(1)));
-    for (FramePlan& plan : plans)
+    for (FramePlan& plan : plans) {
         plan.nodes[0].pointCount = 10;
+        plan.gpuBytes = 80'000'000;
+    }
     for (FramePlan& plan : plans)
         gles.draw(plan);
     CHECK(gles.renderer->gpuBytes() - bare == 3 * 24'000'000);
-    CHECK(gles.renderer->gpuBytes() - bare <= gles::maxIdleNodeBytes + 24'000'000);
+    // What is drawn stays, whatever the limit; a frame without nodes frees everything.
+    plans[3].gpuBytes = 0;
+    gles.draw(plans[3]);
+    CHECK(gles.renderer->gpuBytes() - bare == 24'000'000);
+    plans[3].nodes.clear();
+    gles.draw(plans[3]);
+    CHECK(gles.renderer->gpuBytes() == bare);
 }
 
 TEST_CASE("a picture that can't be drawn is refused in words", "[gles]") {
