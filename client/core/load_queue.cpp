@@ -56,8 +56,8 @@ constexpr std::uint64_t smallGapBytes = 4096;
 std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadItem>& items,
                                      const std::vector<std::size_t>& order,
                                      const std::vector<std::size_t>& place, std::vector<bool>& taken,
-                                     const LoadLimits& limits, const std::function<bool(ByteRange)>& isHere,
-                                     ByteRange& range) {
+                                     const LoadLimits& limits, std::uint64_t mostGapBytes,
+                                     const std::function<bool(ByteRange)>& isHere, ByteRange& range) {
     std::vector<std::size_t> members{first};
     taken[first] = true;
     range = items[first].range;
@@ -75,7 +75,7 @@ std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadIt
         else if (range.offset > item.range.end())
             gap = {item.range.end(), range.offset - item.range.end()};
         ByteRange merged = unionOf(range, item.range);
-        if (gap.size > limits.mergeGapBytes || merged.size > limits.mergedRequestBytes)
+        if (gap.size > mostGapBytes || merged.size > limits.mergedRequestBytes)
             return false;
         if (gap.size > smallGapBytes && merged.size > 2 * (useful + item.range.size))
             return false;
@@ -251,8 +251,9 @@ void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::
         auto isHere = [&](ByteRange gap) {
             return sources_.at(cloud).received.overlaps(gap) || isComing(cloud, gap);
         };
+        std::uint64_t mostGap = sources_.at(cloud).bytes->readsOverGaps() ? limits.mergeGapBytes : 0;
         std::vector<std::size_t> members =
-            mergeAround(i, waiting_, order, place, taken, limits, isHere, range);
+            mergeAround(i, waiting_, order, place, taken, limits, mostGap, isHere, range);
         // One request is always allowed, however large its range.
         if (bytes > 0 && (bytes >= limits.bytes || range.size > limits.bytes - bytes))
             break;

@@ -78,6 +78,7 @@ class BrowserSource : public ByteSource {
     std::string name() const override { return name_; }
 
     virtual Result<std::uint64_t> accept(ByteRange asked, const RangeAnswer& answer) = 0;
+    virtual void markStored() {}
 
     double acceptHeaders(std::uint32_t request, const RangeAnswer& headers) {
         Read& read = reads_.at(request);
@@ -191,11 +192,14 @@ class FetchSource final : public BrowserSource {
     explicit FetchSource(const std::string& url) : BrowserSource(url) {}
     std::uint64_t sizeBytes() const override { return version_.sizeBytes; }
     std::string caution() const override { return versionCaution(version_); }
+    bool readsOverGaps() const override { return !isStored_; }
+    void markStored() override { isStored_ = true; }
 
   private:
     bool wasReadBefore() const override { return version_.pinned; }
     bool forgetVersion() override {
         version_ = {};
+        isStored_ = false;
         return true;
     }
     void start(std::uint32_t request, ByteRange range) override {
@@ -205,6 +209,7 @@ class FetchSource final : public BrowserSource {
         return judgeRangeAnswer(asked, headers, version_, name());
     }
     FileVersion version_;
+    bool isStored_ = false; // in part, by an earlier visit
 };
 
 class FileSource final : public BrowserSource {
@@ -253,6 +258,11 @@ std::unique_ptr<ByteSource> makeFileSource(std::uint32_t file, const std::string
 double acceptHeaders(std::uint32_t request, const RangeAnswer& answer) {
     BrowserSource* owner = ownerOf(request);
     return owner ? owner->acceptHeaders(request, answer) : -1;
+}
+
+void markStored(std::uint32_t request) {
+    if (BrowserSource* owner = ownerOf(request))
+        owner->markStored();
 }
 
 std::uint8_t* bodyBuffer(std::uint32_t request, std::size_t size) {

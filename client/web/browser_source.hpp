@@ -17,6 +17,8 @@ std::unique_ptr<ByteSource> makeFileSource(std::uint32_t file, const std::string
 // What the page reports about request `request`; unknown (cancelled) requests are ignored.
 // Bytes of the body to read, or -1: none, the request is answered.
 double acceptHeaders(std::uint32_t request, const RangeAnswer& answer);
+// The file of that request is, in part, at hand in the browser's store.
+void markStored(std::uint32_t request);
 // Where the next `size` bytes of the body are to be put, before the next call into the program; they count as
 // here. Null: nowhere, the request is answered (more than it was to be).
 std::uint8_t* bodyBuffer(std::uint32_t request, std::size_t size);

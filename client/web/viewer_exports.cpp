@@ -208,6 +208,9 @@ EMSCRIPTEN_KEEPALIVE double stipple_read_headers(std::uint32_t request, int stat
         answer.contentLength = static_cast<std::uint64_t>(contentLength);
     return web::acceptHeaders(request, answer);
 }
+EMSCRIPTEN_KEEPALIVE void stipple_read_is_stored(std::uint32_t request) {
+    web::markStored(request);
+}
 EMSCRIPTEN_KEEPALIVE std::uint8_t* stipple_read_buffer(std::uint32_t request, std::size_t size) {
     return web::bodyBuffer(request, size);
 }

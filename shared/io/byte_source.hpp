@@ -57,6 +57,10 @@ class ByteSource {
     // What may go wrong with it later although it can be read: a sentence. Empty: nothing is known.
     virtual std::string caution() const { return {}; }
 
+    // Whether a request may read over what nobody asked for, to save another one. Not where what was asked
+    // for is at hand, and only the rest would have to be fetched.
+    virtual bool readsOverGaps() const { return true; }
+
     // Delivers completions that have arrived, waiting up to `wait` for the first. Returns the number
     // delivered. Sources that answer inside read(), or that a browser drives, have nothing to do here.
     virtual int pump(std::chrono::milliseconds wait) {

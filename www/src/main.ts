@@ -8,6 +8,7 @@ async function start(): Promise<void> {
     const viewer = document.createElement('stipple-viewer');
     const attributes = { server: './', share: location.href.replace(/#.*/, ''), lang: query.get('lang'), theme: query.get('theme'), controls: '' };
     for (const [name, value] of Object.entries(attributes)) if (value !== null) viewer.setAttribute(name, value);
+    viewer.storeBytes = Number(query.get('store')) * 2 ** 20; // given in MiB
     const main = document.createElement('main');
     main.append(viewer);
     document.body.append(main);
@@ -37,7 +38,7 @@ async function openLinkedScene(viewer: StippleViewer): Promise<boolean> {
 /** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
 async function openClouds(viewer: StippleViewer): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('cloud');
-    named.forEach((address) => viewer.addCloud(address));
+    named.filter(Boolean).forEach((address) => viewer.addCloud(address)); // `?cloud=` names none
     const [first] = await viewer.serverClouds();
     if (named.length === 0 && first) viewer.addCloud(first.address, first.name);
 }

@@ -12,16 +12,15 @@ const pieceBytes = 16_384;
  *   status, headers   instead of the part (undefined fields are left out)
  *   whole             200 and so many bytes
  *   cutAt, flipAt     the body ends before this byte of the file; this byte of the file is another one
- *   gone              the connection breaks without an answer
  *   hides             names of headers that are not shown to other origins
  *   isPrivate         no header that lets another origin read
  *
- * `rate`: bytes a second of each answer; 0: as fast as it goes. `asked` has every GET, `bytesSent` all of bodies,
+ * `isGone`: connections break without an answer. `rate`: bytes a second of each answer; 0: as fast as it goes. `asked` has every GET, `bytesSent` all of bodies,
  * `cutOff` counts answers that the client did not wait for.
  */
 export async function faultyServer(path) {
     const host = { file: await readFile(path), etag: '"1"', fault: undefined, rate: 0 };
-    host.restart = () => Object.assign(host, { asked: [], bytesSent: 0, cutOff: 0, fault: undefined, rate: 0, etag: '"1"' });
+    host.restart = () => Object.assign(host, { asked: [], bytesSent: 0, cutOff: 0, fault: undefined, isGone: false, rate: 0, etag: '"1"' });
     host.restart();
     const server = createServer((request, response) => void answer(host, request, response));
     await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
@@ -34,6 +33,7 @@ export async function faultyServer(path) {
 }
 
 async function answer(host, request, response) {
+    if (host.isGone) return void request.socket.destroy();
     const origin = request.headers.origin ?? '*';
     if (request.method !== 'GET') {
         response.writeHead(204, request.method === 'OPTIONS' ? allowed(origin) : {}).end();
@@ -43,7 +43,6 @@ async function answer(host, request, response) {
     const record = { at: performance.now(), url: request.url, range, headers: request.headers };
     host.asked.push(record);
     const fault = host.fault?.({ ...record, number: host.asked.length }) ?? {};
-    if (fault.gone) return void request.socket.destroy();
 
     const size = host.file.length;
     const [first, last] = [range[0], Math.min(range[1], size - 1)];
@@ -64,29 +63,39 @@ async function answer(host, request, response) {
     if (fault.flipAt >= first && fault.flipAt <= last) body[fault.flipAt - first] ^= 0xff;
     const isCut = fault.cutAt >= first && fault.cutAt <= last;
     await send(host, response, body, isCut ? fault.cutAt - first : length);
-    if (isCut) request.socket.destroy();
+    if (isCut) {
+        await pause(50); // what was written is on its way
+        request.socket.destroy();
+    }
 }
 
 /** `length` bytes of `body`, over and over. */
 async function send(host, response, body, length) {
+    const most = host.rate > 0 ? Math.min(pieceBytes, Math.ceil(host.rate / 10)) : pieceBytes;
     for (let at = 0; at < length; ) {
+        const from = at % body.length;
+        const piece = body.subarray(from, Math.min(from + most, body.length, from + length - at));
+        if (host.rate > 0) await pause((1000 * piece.length) / host.rate);
         if (response.destroyed) {
             host.cutOff++;
             return;
         }
-        const from = at % body.length;
-        const piece = body.subarray(from, Math.min(from + pieceBytes, body.length, from + length - at));
         const goesOn = response.write(piece);
         at += piece.length;
         host.bytesSent += piece.length;
-        if (host.rate > 0) await pause((1000 * piece.length) / host.rate);
-        else if (!goesOn) await Promise.race([once(response, 'drain'), once(response, 'close')]);
+        if (!goesOn) await drainedOrClosed(response);
     }
-    if (!response.destroyed && length >= body.length) response.end();
+    if (!response.destroyed && length >= body.length) response.end(); // a cut one stays open
 }
 
-function once(response, event) {
-    return new Promise((resolve) => response.once(event, resolve));
+function drainedOrClosed(response) {
+    return new Promise((resolve) => {
+        const done = () => {
+            response.off('drain', done).off('close', done);
+            resolve();
+        };
+        response.on('drain', done).on('close', done);
+    });
 }
 
 function allowed(origin) {

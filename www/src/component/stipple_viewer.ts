@@ -83,6 +83,14 @@ export class StippleViewer extends HTMLElement {
         this.requests.prepare = prepare;
     }
 
+    /** What came of clouds may stay in the browser for the next visit, up to so many bytes; 0: nothing. */
+    get storeBytes(): number {
+        return this.requests.storeBytes;
+    }
+    set storeBytes(bytes: number) {
+        this.requests.storeBytes = Number.isFinite(bytes) ? bytes : 0;
+    }
+
     /** Asks again for what a cloud could not have, or all of them. What is here stays, and the camera. */
     retry(id = 0): void {
         this.get().model.problems.retry(id);

@@ -2,6 +2,8 @@ import { DecoderPool } from './decoder_pool.ts';
 import { Heap } from './heap.ts';
 import type { ViewerProgram } from './program.ts';
 import { isMixedContent, isThereButNotAllowed, type Requests } from './requests.ts';
+import { StoredFiles } from './stored_files.ts';
+import type { StoredFile } from './stored_ranges.ts';
 
 /** ReadFailure of client/web/browser_source.hpp. */
 const enum Failure {
@@ -24,11 +26,14 @@ export class Host {
     private program!: ViewerProgram;
     private heap!: Heap;
     private decoders: DecoderPool | undefined;
+    private readonly stored: StoredFiles;
 
     constructor(
         readonly wake: () => void,
         private readonly sending: Requests,
-    ) {}
+    ) {
+        this.stored = new StoredFiles(sending);
+    }
 
     /** Starts with the program that this host serves. */
     attach(program: ViewerProgram): Heap {
@@ -101,15 +106,23 @@ export class Host {
         let failure = Failure.notPrepared;
         let asked = url;
         try {
+            const stored = await this.stored.of(url);
+            if (stored && (await this.answerStored(request, stored, range))) return;
+            if (signal.aborted) return;
             const prepared = await this.sending.prepared(url, range);
             asked = prepared.url;
             if (signal.aborted) return;
             if (isMixedContent(asked)) return this.fail(request, Failure.mixedContent, '');
             failure = Failure.network;
             const response = await fetch(asked, { ...prepared.init, signal });
-            if (this.acceptHeaders(request, response) < 0) return; // the program has it aborted
+            const fields = fieldsOf(response);
+            if (stored && fields.etag !== stored.etag) this.stored.forget(url);
+            const expected = this.acceptHeaders(request, response.status, fields);
+            if (expected < 0) return; // the program has it aborted
             failure = Failure.shortBody;
-            await this.readBody(request, response);
+            const isToStay = fields.etag === stored?.etag;
+            const body = await this.readBody(request, response, isToStay ? expected : 0);
+            if (isToStay && body) void stored.keep(firstOf(range), body);
         } catch (error) {
             if (signal.aborted) return;
             const isHidden = failure === Failure.network && (await isThereButNotAllowed(asked, signal));
@@ -118,32 +131,40 @@ export class Host {
         }
     }
 
-    /** Each piece goes to its place as it comes, so that the program knows how far the answer is. */
-    private async readBody(request: number, response: Response): Promise<void> {
+    /** Of the version that was found to be its server's. False: not all of it is there, or nobody wants it any more. */
+    private async answerStored(request: number, stored: StoredFile, range: string): Promise<boolean> {
+        if (!this.requests.has(request)) return false;
+        if (stored.wasKnown) this.program._stipple_read_is_stored(request);
+        const [first, last] = range.slice('bytes='.length).split('-').map(Number) as [number, number];
+        const end = Math.min(last + 1, stored.sizeBytes);
+        const body = first < end ? await stored.read(first, end).catch(() => undefined) : undefined;
+        if (!body || !this.requests.has(request)) return false;
+        const contentRange = `bytes ${first}-${end - 1}/${stored.sizeBytes}`;
+        const fields = { contentRange, etag: stored.etag, lastModified: '', retryAfter: '', contentLength: body.length };
+        if (this.acceptHeaders(request, 206, fields) >= 0 && this.put(request, body)) this.end(request);
+        return true;
+    }
+
+    /** Each piece goes to its place as it comes, so that the program knows how far the answer is. A copy, if it is `copied` bytes. */
+    private async readBody(request: number, response: Response, copied: number): Promise<Uint8Array | undefined> {
+        const copy = new Uint8Array(copied);
         const reader = response.body?.getReader();
-        for (;;) {
+        for (let here = 0; ; ) {
             const { done, value } = (await reader?.read()) ?? { done: true, value: undefined };
-            if (done) return this.end(request);
-            if (!this.put(request, value)) return; // taken back, or longer than it may be: aborted
+            if (done) {
+                this.end(request);
+                return here === copied ? copy : undefined;
+            }
+            if (!this.put(request, value)) return undefined; // taken back, or longer than it may be: aborted
+            if (here + value.length <= copied) copy.set(value, here);
+            here += value.length;
         }
     }
 
-    private acceptHeaders(request: number, response: Response): number {
-        const field = (name: string): string => response.headers.get(name) ?? '';
-        const isCoded = field('content-encoding') !== '';
-        const length = isCoded || field('content-length') === '' ? -1 : Number(field('content-length'));
-        return this.heap.lendTexts(
-            [field('content-range'), field('etag'), field('last-modified'), field('retry-after')],
-            (contentRange, etag, lastModified, retryAfter) =>
-                this.program._stipple_read_headers(
-                    request,
-                    response.status,
-                    contentRange!,
-                    etag!,
-                    lastModified!,
-                    length,
-                    retryAfter!,
-                ),
+    private acceptHeaders(request: number, status: number, fields: Fields): number {
+        const { contentRange, etag, lastModified, retryAfter, contentLength } = fields;
+        return this.heap.lendTexts([contentRange, etag, lastModified, retryAfter], (a, b, c, d) =>
+            this.program._stipple_read_headers(request, status, a!, b!, c!, contentLength, d!),
         );
     }
 
@@ -177,6 +198,32 @@ export class Host {
         });
         this.program._stipple_decode_done(job);
     }
+}
+
+/** What an answer's header says; empty where it says nothing, or -1. */
+interface Fields {
+    contentRange: string;
+    etag: string;
+    lastModified: string;
+    retryAfter: string;
+    contentLength: number;
+}
+
+function fieldsOf(response: Response): Fields {
+    const field = (name: string): string => response.headers.get(name) ?? '';
+    const isCoded = field('content-encoding') !== '';
+    return {
+        contentRange: field('content-range'),
+        etag: field('etag'),
+        lastModified: field('last-modified'),
+        retryAfter: field('retry-after'),
+        contentLength: isCoded || field('content-length') === '' ? -1 : Number(field('content-length')),
+    };
+}
+
+/** Of "bytes=0-65535". */
+function firstOf(range: string): number {
+    return Number(/\d+/.exec(range)![0]);
 }
 
 function messageOf(error: unknown): string {

@@ -80,6 +80,7 @@ export interface ViewerProgram extends Program {
         contentLength: number,
         retryAfter: Address,
     ): number;
+    _stipple_read_is_stored(request: number): void;
     _stipple_read_buffer(request: number, size: number): Address;
     _stipple_read_done(request: number): void;
     _stipple_read_failed(request: number, failure: number, detail: Address): void;

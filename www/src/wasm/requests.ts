@@ -22,6 +22,8 @@ export type PrepareRequest = (
  */
 export class Requests {
     prepare: PrepareRequest | undefined;
+    /** What came may stay in the browser for the next visit, up to so many bytes (stored_ranges.ts); 0: nothing. */
+    storeBytes = 0;
     private readonly tokens = new Map<string, string>(); // by origin
 
     /** For the server of that address; an empty one forgets it. */
