@@ -180,6 +180,15 @@ LoadItem CloudLoader::pointsItem(std::uint32_t node) const {
     return itemFor(LoadKind::points, node, {entry.offsetBytes, entry.sizeBytes()});
 }
 
+LoadItem CloudLoader::regionItem(ByteRange range, const Bytes* head) const {
+    if (!head)
+        return itemFor(LoadKind::region, 0, range);
+    std::uint64_t here = std::min<std::uint64_t>(head->size(), range.size);
+    LoadItem rest = itemFor(LoadKind::region, 0, {range.offset + here, range.size - here});
+    rest.head.insert(rest.head.begin(), head->begin(), head->begin() + static_cast<std::ptrdiff_t>(here));
+    return rest;
+}
+
 void CloudLoader::addBlockItems(std::uint32_t node, const CachedNode* cached,
                                 std::vector<LoadItem>& items) const {
     for (int block : needs.blocks)

@@ -67,6 +67,8 @@ struct CloudLoader {
     std::optional<LoadItem> pictureItem(std::uint32_t node, int strata, const CachedNode* cached) const;
     // All bytes of a node, whatever is here of it already (LoadKind::points).
     LoadItem pointsItem(std::uint32_t node) const;
+    // Bytes for a region's scan (LoadKind::region), of which `head`, if there is one, is here.
+    LoadItem regionItem(ByteRange range, const Bytes* head) const;
     // The further blocks that the style needs, those that are watched, or one of them.
     void addBlockItems(std::uint32_t node, const CachedNode* cached, std::vector<LoadItem>& items) const;
     void addWatchedItems(std::uint32_t node, const CachedNode* cached, std::vector<LoadItem>& items) const;

@@ -40,6 +40,9 @@ class FieldReader {
             error_ = Error{ErrorCode::invalidArgument, "an object {…} is expected", path_, ""};
     }
 
+    // A field that is read in another way.
+    void allow(const char* name) { known_.insert(name); }
+
     void flag(const char* name, bool& value) {
         if (const Json* field = find(name)) {
             if (!field->is_boolean())

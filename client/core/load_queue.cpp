@@ -67,6 +67,9 @@ std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadIt
         const LoadItem& item = items[index];
         if (taken[index] || item.key.cloud != items[first].key.cloud || item.mayEndEarly)
             return false;
+        bool isRegion = item.key.kind == LoadKind::region; // what the picture waits for travels without it
+        if (isRegion != (items[first].key.kind == LoadKind::region))
+            return false;
         if (!limits.mergesNodes && item.key.id != items[first].key.id)
             return false;
         ByteRange gap{range.end(), 0};

@@ -26,13 +26,13 @@
 
 namespace stipple {
 
-enum class LoadKind : std::uint8_t { opening, chunk, picture, attributes, points };
+enum class LoadKind : std::uint8_t { opening, chunk, picture, attributes, points, region };
 
 struct LoadKey {
     std::uint32_t cloud = 0;
     LoadKind kind = LoadKind::opening;
-    std::uint64_t id = 0;   // of a node; opening: the offset
-    std::int32_t block = 0; // attributes: of the node's further blocks
+    std::uint64_t id = 0;   // of a node; opening: the offset; region: RegionScan::keyId()
+    std::int32_t block = 0; // attributes: of the node's further blocks; region: the scan
     friend auto operator<=>(const LoadKey&, const LoadKey&) = default;
 };
 

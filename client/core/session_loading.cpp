@@ -205,6 +205,10 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
         return;
     CloudLoader& cloud = at->second;
     auto node = static_cast<std::uint32_t>(loaded.item.key.id);
+    if (loaded.item.key.kind == LoadKind::region && (loaded.bytes.ok() || !isFatal(loaded.bytes.error()))) {
+        takeRegion(cloud, loaded);
+        return;
+    }
     arrivals.changed = true;
     if (loaded.item.key.kind == LoadKind::points && (loaded.bytes.ok() || !isFatal(loaded.bytes.error()))) {
         pointQueries_.takeLoaded(cloud, node, loaded.bytes);
@@ -231,8 +235,18 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
         decoding_.takeBlock(cloud, node, loaded.item.key.block, std::move(*loaded.bytes));
         break;
     case LoadKind::points:
+    case LoadKind::region:
         break; // taken above
     }
+}
+
+// Kept as what came along in gaps is, so that the picture does not ask for it once more.
+void SessionLoading::takeRegion(CloudLoader& cloud, Loaded& loaded) {
+    const ByteRange& range = loaded.item.range;
+    if (loaded.bytes.ok() && range.size > 0 && loaded.bytes->size() >= range.size)
+        kept_.add(cloud.state.id, range.offset,
+                  Bytes(loaded.bytes->end() - static_cast<std::ptrdiff_t>(range.size), loaded.bytes->end()));
+    regionScans_.takeLoaded(cloud, loaded.item, std::move(loaded.bytes));
 }
 
 // The bytes may have been damaged on their way: once more.
@@ -315,6 +329,7 @@ void SessionLoading::release(CloudId id) {
     cache_.eraseCloud(id);
     kept_.eraseCloud(id);
     pointQueries_.cancel(id);
+    regionScans_.fail(id, {ErrorCode::cancelled, "the cloud was closed, or its file replaced", "", ""});
     std::erase_if(local_, [&](const Loaded& loaded) { return loaded.item.key.cloud == id; });
 }
 

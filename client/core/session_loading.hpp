@@ -11,6 +11,7 @@
 #include "client/core/node_cache.hpp"
 #include "client/core/node_decoding.hpp"
 #include "client/core/point_query.hpp"
+#include "client/core/region_scans.hpp"
 #include "client/core/view_session.hpp"
 
 #include <deque>
@@ -39,6 +40,8 @@ class SessionLoading {
     const NodeCache& cache() const { return cache_; }
     PointQueries& pointQueries() { return pointQueries_; }
     const PointQueries& pointQueries() const { return pointQueries_; }
+    RegionScans& regionScans() { return regionScans_; }
+    const RegionScans& regionScans() const { return regionScans_; }
     const std::deque<Error>& errors() const { return errors_; } // at most maxRecentErrors, newest last
 
     // Lets sources and decoder answer, waiting up to `wait` for the first if something is on its way.
@@ -62,6 +65,7 @@ class SessionLoading {
 
     bool anyOpening() const;
     bool anyInterrupted() const;
+    bool hasLocal() const { return !local_.empty(); } // wanted, and here without a request
     // Nothing is wanted, on its way or waiting to be worked off.
     bool idle() const;
     std::optional<Error> passingFailure() const { return queue_.passingFailure(); }
@@ -71,6 +75,7 @@ class SessionLoading {
     bool hasArrivals() const;
     std::ptrdiff_t awaited() const;
     void takeLoaded(Loaded& loaded, Arrivals& arrivals);
+    void takeRegion(CloudLoader& cloud, Loaded& loaded);
     void open(CloudLoader& cloud);
     void takeChunk(CloudLoader& cloud, std::uint32_t node, const Bytes& bytes);
     void reload(CloudLoader& cloud, Arrivals& arrivals);
@@ -86,6 +91,7 @@ class SessionLoading {
     LoadQueue queue_;
     NodeDecoding decoding_;
     PointQueries pointQueries_;
+    RegionScans regionScans_;
     CloudMap clouds_;
     CloudId lastCloud_ = 0;
     std::vector<Loaded> local_; // wanted, and here without a request

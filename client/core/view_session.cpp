@@ -101,11 +101,14 @@ class Session final : public ViewSession {
         dirty_ |= arrivals.changed;
         for (CloudId id : arrivals.failed)
             forget(id);
+        bool asksMore = loading_.regionScans().advance(loading_.clouds());
         bool selected = dirty_;
         if (unusedSince_ && now_() - *unusedSince_ > unusedLife)
             dropUnused();
         if (dirty_)
             selectAndWant();
+        else if (asksMore || std::exchange(regionsChanged_, false))
+            wantLoads();
         ++(selected ? counters_.selectionsRun : counters_.selectionsSkipped);
         loading_.start(limits_);
         bool isDue = selected || planDirty_;
@@ -118,7 +121,7 @@ class Session final : public ViewSession {
     const FramePlan& plan() const override { return plan_; }
 
     bool settled() const override {
-        return !dirty_ && !planDirty_ && loading_.idle() &&
+        return !dirty_ && !planDirty_ && !regionsMustGoOn() && loading_.idle() &&
                (selection_.counters.complete || loading_.anyInterrupted());
     }
 
@@ -174,6 +177,29 @@ class Session final : public ViewSession {
     }
     std::vector<PointAnswer> takePointAnswers() override { return loading_.pointQueries().take(); }
     bool pointsPending() const override { return loading_.pointQueries().pending(); }
+
+    Result<RegionScanId> scanRegion(const RegionRequest& request) override {
+        auto cloud = loading_.clouds().find(request.cloud);
+        if (cloud == loading_.clouds().end())
+            return Error{ErrorCode::invalidArgument, cat("there is no cloud ", request.cloud), "", ""};
+        return loading_.regionScans().start(cloud->second, request);
+    }
+    std::vector<RegionNode> takeRegionNodes(RegionScanId id, std::size_t most) override {
+        RegionScan* scan = loading_.regionScans().find(id);
+        return scan ? scan->take(most) : std::vector<RegionNode>();
+    }
+    RegionProgress regionProgress(RegionScanId id) const override {
+        if (const RegionScan* scan = loading_.regionScans().find(id))
+            return scan->progress();
+        RegionProgress none;
+        none.error = Error{ErrorCode::cancelled, cat("there is no scan ", id), "", ""};
+        return none;
+    }
+    void endRegionScan(RegionScanId id) override {
+        loading_.regionScans().end(id);
+        regionsChanged_ = true; // what is on its way for it is not wanted any more
+    }
+    bool regionsMustGoOn() const override { return loading_.regionScans().mustGoOn() || loading_.hasLocal(); }
 
     std::vector<Error> recentErrors() const override {
         return {loading_.errors().begin(), loading_.errors().end()};
@@ -420,6 +446,14 @@ class Session final : public ViewSession {
                 loading_.clouds()
                     .at(selectionIds_[selected.cloud])
                     .addWatchedItems(selected.node, loading_.cache().find(cacheKey(selected)), items);
+        // Behind all that the picture needs, which may want the same chunks.
+        std::set<LoadKey> chunks;
+        for (const LoadItem& item : items)
+            if (item.key.kind == LoadKind::chunk)
+                chunks.insert(item.key);
+        for (LoadItem& item : loading_.regionScans().items(loading_.clouds(), loading_.cache()))
+            if (item.key.kind != LoadKind::chunk || chunks.insert(item.key).second)
+                items.push_back(std::move(item));
         loading_.want(std::move(items));
     }
 
@@ -550,8 +584,9 @@ class Session final : public ViewSession {
     ClipBoxes clips_;                  // of style_
     std::vector<std::string> watched_; // attributes
 
-    bool dirty_ = true;      // a selection could come out differently
-    bool planDirty_ = false; // the style changed in what shows only
+    bool dirty_ = true;           // a selection could come out differently
+    bool planDirty_ = false;      // the style changed in what shows only
+    bool regionsChanged_ = false; // a scan was ended
     std::uint64_t frame_ = 0;
     std::optional<std::chrono::steady_clock::time_point> unusedSince_; // something may be
     ViewTransform view_;

@@ -11,6 +11,7 @@
 #include "client/core/node_decoder.hpp"
 #include "client/core/point_record.hpp"
 #include "client/core/priority_weights.hpp"
+#include "client/core/region_request.hpp"
 #include "client/core/skips.hpp"
 #include "client/core/style.hpp"
 #include "client/core/view_counter.hpp"
@@ -125,6 +126,17 @@ class ViewSession {
     // Each answer exactly once; also errors, and `cancelled` if the cloud was closed meanwhile.
     virtual std::vector<PointAnswer> takePointAnswers() = 0;
     virtual bool pointsPending() const = 0;
+    // Has all nodes of a region read (region_scan.hpp), after what the picture wants. Errors: invalidArgument
+    // for a cloud that is not open, and what of the request can't be.
+    virtual Result<RegionScanId> scanRegion(const RegionRequest& request) = 0;
+    // Nodes that were read, coarse ones first, at most so many; each once. Nothing where there is no such
+    // scan.
+    virtual std::vector<RegionNode> takeRegionNodes(RegionScanId id, std::size_t most) = 0;
+    // `cancelled` where there is no such scan.
+    virtual RegionProgress regionProgress(RegionScanId id) const = 0;
+    virtual void endRegionScan(RegionScanId id) = 0; // done with, or not wanted any more
+    // A scan has more to do than the last update() did: another should follow soon.
+    virtual bool regionsMustGoOn() const = 0;
     // The most recent loading errors (at most maxRecentErrors), newest last, each when it became final: what
     // may pass is tried LoadQueue::maxAttempts times, a block that does not decode twice. A node that failed
     // leaves the others as they are; a file that changed fails its cloud.
