@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 . scripts/environment.sh
 
 scripts/fetch_web_dependencies.sh
-configure_and_build wasm stipple_viewer stipple_decoder
+configure_and_build wasm stipple_viewer stipple_decoder stipple_region
 
 # node_modules is made anew when the lock file changes.
 stamp=www/node_modules/.complete

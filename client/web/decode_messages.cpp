@@ -1,5 +1,7 @@
 #include "client/web/decode_messages.hpp"
 
+#include "client/web/entry_message.hpp"
+
 #include <algorithm>
 #include <array>
 
@@ -16,22 +18,6 @@ static_assert(sizeof(NodeColumn) == 8);
 
 Error damaged(const char* what) {
     return {ErrorCode::corrupt, what, "decoding worker", "reload the page"};
-}
-
-void writeKey(ByteWriter& out, const NodeKey& key) {
-    out.write(key.level);
-    out.write(key.x);
-    out.write(key.y);
-    out.write(key.z);
-}
-
-NodeKey readKey(ByteReader& in) {
-    NodeKey key;
-    key.level = in.read<std::uint8_t>();
-    key.x = in.read<std::uint32_t>();
-    key.y = in.read<std::uint32_t>();
-    key.z = in.read<std::uint32_t>();
-    return key;
 }
 
 void writeText(ByteWriter& out, const std::string& text) {
@@ -77,15 +63,7 @@ Bytes encodeJob(const DecodeJob& job) {
     ByteWriter out;
     out.write(jobMark);
     out.write(job.cloud);
-    writeKey(out, job.entry.key);
-    out.write(job.entry.childMask);
-    out.write(job.entry.pointCount);
-    out.write(job.entry.offsetBytes);
-    for (std::uint32_t size : job.entry.strataBytes)
-        out.write(size);
-    out.write(static_cast<std::uint32_t>(job.entry.attributeBytes.size()));
-    for (std::uint32_t size : job.entry.attributeBytes)
-        out.write(size);
+    writeEntry(out, job.entry);
     out.write(static_cast<std::int32_t>(job.strata));
     out.write(job.block);
     return out.take();
@@ -97,18 +75,8 @@ Result<DecodeJob> decodeJob(ByteSpan message) {
     if (in.read<std::uint32_t>() != jobMark)
         return damaged("a message is no decoding job");
     job.cloud = in.read<std::uint32_t>();
-    job.entry.key = readKey(in);
-    job.entry.childMask = in.read<std::uint8_t>();
-    job.entry.pointCount = in.read<std::uint32_t>();
-    job.entry.offsetBytes = in.read<std::uint64_t>();
-    for (std::uint32_t& size : job.entry.strataBytes)
-        size = in.read<std::uint32_t>();
-    std::uint32_t blocks = in.read<std::uint32_t>();
-    if (blocks > in.remaining() / sizeof(std::uint32_t))
+    if (!readEntry(in, job.entry))
         return damaged("a decoding job names more blocks than it holds");
-    job.entry.attributeBytes.resize(blocks);
-    for (std::uint32_t& size : job.entry.attributeBytes)
-        size = in.read<std::uint32_t>();
     job.strata = in.read<std::int32_t>();
     job.block = in.read<std::int32_t>();
     if (!in.ok() || in.remaining() != 0 || job.strata < 0 || job.strata > strataCount)

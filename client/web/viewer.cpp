@@ -222,6 +222,8 @@ bool Viewer::frame() {
     if (!renderer_)
         return false;
     bool isNew = session_->update();
+    if (session_->regionsMustGoOn())
+        stippleHostWake();
     if (pendingViewIsDue()) {
         applyPendingView();
         isNew = session_->update() || isNew;

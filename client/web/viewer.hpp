@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 
 namespace stipple::web {
@@ -98,6 +99,18 @@ class Viewer {
     // Where world positions [[x, y, z], …] are in the present picture: [x, y, view distance] each, in pixels
     // from the canvas's top left; null for what is behind the camera.
     std::string projectJson(std::string_view positions) const;
+
+    // Scans of regions (client/core/region_scan.hpp), for the worker that makes something of their points.
+    // The metadata of a cloud as in its file; empty if it is not open.
+    Bytes metadataOf(CloudId id) const;
+    // `json`: {"cloud": id, "region": {…}, "attributes": [indices]}.
+    Result<RegionScanId> scanRegion(std::string_view json);
+    // The next node that is here: its message (client/web/region_messages.hpp) and bytes; nothing if none is.
+    std::optional<std::pair<Bytes, Bytes>> takeRegionNode(RegionScanId id);
+    // {"nodesDone", "nodesToDo", "pointsDone", "pointsToDo", "nodesOutside", "chunksToDo", "bytesRead",
+    // "hierarchyKnown", "complete", "error": sentence or null}
+    std::string regionProgressJson(RegionScanId id) const;
+    void endRegionScan(RegionScanId id);
 
     // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
     // kept for drawError().

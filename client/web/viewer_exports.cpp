@@ -12,6 +12,7 @@ namespace {
 
 std::unique_ptr<Viewer> viewer;
 std::string text;
+Bytes regionMessage, regionBytes;
 
 const char* give(std::string value) {
     text = std::move(value);
@@ -197,6 +198,40 @@ EMSCRIPTEN_KEEPALIVE void stipple_context_lost() {
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_context_restored() {
     return give(viewer->contextRestored());
+}
+
+// Scans of regions. What a call hands out stands until the next.
+EMSCRIPTEN_KEEPALIVE std::size_t stipple_region_metadata(std::uint32_t cloud) {
+    regionMessage = viewer->metadataOf(cloud);
+    return regionMessage.size();
+}
+// The scan's number as text, or a sentence.
+EMSCRIPTEN_KEEPALIVE const char* stipple_region_scan(const char* json) {
+    Result<RegionScanId> scan = viewer->scanRegion(json);
+    return scan.ok() ? give(std::to_string(*scan)) : give(scan.error().sentence());
+}
+// The size of the next node's message; 0: none is here.
+EMSCRIPTEN_KEEPALIVE std::size_t stipple_region_take(int scan) {
+    auto node = viewer->takeRegionNode(scan);
+    regionMessage = node ? std::move(node->first) : Bytes();
+    regionBytes = node ? std::move(node->second) : Bytes();
+    return regionMessage.size();
+}
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* stipple_region_message() {
+    return regionMessage.data();
+}
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* stipple_region_bytes() {
+    return regionBytes.data();
+}
+EMSCRIPTEN_KEEPALIVE std::size_t stipple_region_bytes_size() {
+    return regionBytes.size();
+}
+EMSCRIPTEN_KEEPALIVE const char* stipple_region_progress(int scan) {
+    return give(viewer->regionProgressJson(scan));
+}
+EMSCRIPTEN_KEEPALIVE void stipple_region_end(int scan) {
+    viewer->endRegionScan(scan);
+    regionMessage = regionBytes = {};
 }
 
 // Answers of the page to reads (client/web/browser_source.hpp). `contentLength` < 0: not said.

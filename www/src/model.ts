@@ -13,6 +13,7 @@ import { CameraMoves } from './navigation/camera_moves.ts';
 import { Film } from './navigation/film.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
+import { RegionFiles } from './regions/region_files.ts';
 import { Scenes } from './scene/scenes.ts';
 import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
 import { Problem } from './texts/message.ts';
@@ -63,9 +64,11 @@ export class Model extends EventTarget {
     wantedSize: { width?: number | undefined; height?: number | undefined } = {};
     readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);
-    readonly profile = new Profile(this);
+    readonly profile: Profile;
     /** What was measured, and the tool in hand. */
-    readonly measuring = new Measuring(this);
+    readonly measuring: Measuring;
+    /** Files of regions that the page makes itself. */
+    readonly regionFiles: RegionFiles;
 
     /** The browser has taken the graphics context away. */
     isContextLost = false;
@@ -96,6 +99,9 @@ export class Model extends EventTarget {
         this.counting = new ViewCounting(this, viewer);
         this.looks = new Looks(this, viewer, this.counting);
         this.problems = new CloudProblems(this, viewer, requests);
+        this.measuring = new Measuring(this, viewer);
+        this.profile = new Profile(this, viewer);
+        this.regionFiles = new RegionFiles(this, viewer);
         this.read();
         this.surface.follow(this.frames, {
             lost: () => this.setContextLost(true),

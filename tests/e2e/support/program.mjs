@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
 
-const root = fileURLToPath(new URL('../../..', import.meta.url));
+export const root = fileURLToPath(new URL('../../..', import.meta.url));
 const program = process.env.STIPPLE_PROGRAM ?? join(root, 'build/release/client/headless/stipple');
 
 /** Standard output of one run; an exit code other than 0 throws with what it said. */

@@ -1,4 +1,4 @@
-import type { ClipBox, Vector } from '../wasm/values.ts';
+import type { ClipBox, RegionOf, Vector } from '../wasm/values.ts';
 
 /** Clip boxes as a person edits them. Values, never changed: each step gives another box. World units, degrees. */
 
@@ -72,6 +72,11 @@ export function cornersOf(box: ClipBox): Vector[] {
 export const edges: [number, number][] = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((corner) =>
     [1, 2, 4].filter((bit) => !(corner & bit)).map((bit): [number, number] => [corner, corner | bit]),
 );
+
+/** What it holds, as a region that the page reads. */
+export function regionOf(box: ClipBox): RegionOf {
+    return { box: { centre: box.centre, halfSize: box.halfSize, axes: axesOf(box) } };
+}
 
 /** Where the server's points inside it are (docs/API.md); undefined where it is turned in a way that has no address. */
 export function pointsAddress(apiOfCloud: string, box: ClipBox, format: string): string | undefined {

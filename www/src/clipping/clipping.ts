@@ -1,5 +1,5 @@
 import type { Model } from '../model.ts';
-import type { ClipBox } from '../wasm/values.ts';
+import type { ClipBox, CloudState } from '../wasm/values.ts';
 import { withHeading } from './boxes.ts';
 
 /** The clip boxes of the style, and which of them is being edited. */
@@ -52,6 +52,14 @@ export class Clipping {
                 name,
                 api: new URL(`api/v1/clouds/${encodeURIComponent(id)}`, server).href,
             }));
+    }
+
+    /** Those whose points the page has to read itself: of static hosts, and files. */
+    cloudsWithoutApi(): CloudState[] {
+        const served = this.model.listed.map(({ address }) => address);
+        return this.model.clouds.filter(
+            ({ id, stage }) => stage === 'ready' && !served.includes(this.model.addressOf(id) ?? ''),
+        );
     }
 
     private set(clipBoxes: ClipBox[]): void {

@@ -1,5 +1,5 @@
 import type { PlacedPoint, Vector } from '../wasm/values.ts';
-import { kindOf, type Measurement } from './measurement.ts';
+import { kindOf, type Measurement, type VolumeBase } from './measurement.ts';
 
 /** Files of measurements for other programs. Coordinates and lengths are in the cloud's own unit and system, but for GeoJSON's coordinates. */
 export type ExportFormat = 'json' | 'csv' | 'geojson' | 'dxf';
@@ -42,10 +42,15 @@ function asJson(items: Measurement[]): string {
             node: point.node,
             index: point.index,
         })),
+        ...(item.base && { base: baseOf(item.base) }),
         ...(item.answer && { result: item.answer }),
         ...(item.error && { error: item.error }),
     }));
     return `${JSON.stringify({ version: 1, measurements }, null, 2)}\n`;
+}
+
+function baseOf(base: VolumeBase): object {
+    return base.from === 'point' ? { from: 'point', position: base.point.position } : base;
 }
 
 /** RFC 4180: one row a measurement, a column a value that any of them has. */

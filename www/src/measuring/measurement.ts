@@ -12,7 +12,14 @@ export interface Measurement {
     answer?: MeasureAnswer;
     /** Why there is no answer. */
     error?: string;
+    /** Of a volume: what heights are taken from. */
+    base?: VolumeBase;
+    /** Of a volume whose points are being read: 0..1. */
+    share?: number;
 }
+
+/** The plane through its corners' triangles; a level one at a height of the cloud's, or at a point that was picked. */
+export type VolumeBase = { from: 'rim' } | { from: 'height'; height: number } | { from: 'point'; point: PlacedPoint };
 
 export interface KindOfMeasurement {
     kind: MeasureKind;
@@ -30,6 +37,7 @@ export const kindsOfMeasurement: KindOfMeasurement[] = [
     { kind: 'circle', least: 3, points: 3 },
     { kind: 'azimuth', least: 2, points: 2 },
     { kind: 'point', least: 1, points: 1 },
+    { kind: 'volume', least: 3, isClosed: true },
 ];
 
 export function kindOf(kind: MeasureKind): KindOfMeasurement {

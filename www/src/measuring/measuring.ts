@@ -1,7 +1,9 @@
 import type { Model } from '../model.ts';
 import type { MeasureKind, PlacedPoint } from '../wasm/values.ts';
-import { kindOf, type Measurement, obstacleOf, requestOf } from './measurement.ts';
+import type { Viewer } from '../wasm/viewer.ts';
+import { kindOf, type Measurement, obstacleOf, requestOf, type VolumeBase } from './measurement.ts';
 import type { DisplayUnit } from './units.ts';
+import { Volumes } from './volumes.ts';
 
 /** The measuring tools: what was measured, and the one that is being drawn. 'change' says that something did. */
 export class Measuring extends EventTarget {
@@ -9,15 +11,26 @@ export class Measuring extends EventTarget {
     unit: DisplayUnit = 'stored';
     /** Whose points are being picked; with none yet, it is not in `items`. */
     private drawn: Measurement | undefined;
+    /** The volume whose base the next click tells the height of. */
+    private based: Measurement | undefined;
     private lastId = 0;
     private readonly numbers = new Map<MeasureKind, number>();
+    private readonly volumes: Volumes;
 
-    constructor(private readonly model: Model) {
+    constructor(
+        private readonly model: Model,
+        viewer: Viewer,
+    ) {
         super();
+        this.volumes = new Volumes(model, viewer, () => this.changed());
     }
 
+    /** A click is for a point of the cloud. */
     get isDrawing(): boolean {
-        return this.drawn !== undefined;
+        return this.drawn !== undefined || this.based !== undefined;
+    }
+    isPickingBaseOf(item: Measurement): boolean {
+        return this.based === item;
     }
     get drawnKind(): MeasureKind | undefined {
         return this.drawn?.kind;
@@ -36,7 +49,24 @@ export class Measuring extends EventTarget {
     /** Takes the point shown at a place of the canvas, in CSS pixels. */
     async click(x: number, y: number): Promise<void> {
         const point = await this.pick(x, y);
-        if (point) this.add(point);
+        if (!point) return;
+        if (this.based) this.setBase(this.based, { from: 'point', point });
+        else this.add(point);
+    }
+
+    /** What a volume's heights are taken from. */
+    setBase(item: Measurement, base: VolumeBase): void {
+        if (base.from === 'height' && !Number.isFinite(base.height)) return;
+        this.based = undefined;
+        item.base = base;
+        this.measure(item);
+        this.changed();
+    }
+    /** The next click picks the height of the base. */
+    pickBase(item: Measurement): void {
+        this.finish();
+        this.based = this.based === item ? undefined : item;
+        this.changed();
     }
 
     add(point: PlacedPoint): void {
@@ -65,8 +95,10 @@ export class Measuring extends EventTarget {
     /** Keeps what is drawn if it has points enough, and puts the tool away. */
     finish(): void {
         const item = this.drawn;
+        this.based = undefined;
         if (!item) return;
         this.drawn = undefined;
+        if (item.kind === 'volume') this.measure(item); // not at each of its corners
         if (item.points.length < kindOf(item.kind).least) this.items = this.items.filter((other) => other !== item);
         this.changed();
     }
@@ -75,6 +107,7 @@ export class Measuring extends EventTarget {
     stop(): void {
         const item = this.drawn;
         this.drawn = undefined;
+        this.based = undefined;
         this.items = this.items.filter((other) => other !== item);
         this.changed();
     }
@@ -89,8 +122,10 @@ export class Measuring extends EventTarget {
     }
 
     /** Takes the place of what was measured. */
-    replace(items: { kind: MeasureKind; name: string; hidden: boolean; points: PlacedPoint[] }[]): void {
+    replace(items: Pick<Measurement, 'kind' | 'name' | 'hidden' | 'points' | 'base'>[]): void {
         this.drawn = undefined;
+        this.based = undefined;
+        this.items.forEach((item) => this.volumes.stop(item));
         this.items = items.map((item) => ({ id: ++this.lastId, ...item }));
         this.items.forEach((item) => this.measure(item));
         this.changed();
@@ -107,6 +142,8 @@ export class Measuring extends EventTarget {
     remove(item: Measurement): void {
         this.items = this.items.filter((other) => other !== item);
         if (this.drawn === item) this.drawn = undefined;
+        if (this.based === item) this.based = undefined;
+        this.volumes.stop(item);
         this.changed();
     }
     setUnit(unit: DisplayUnit): void {
@@ -126,10 +163,14 @@ export class Measuring extends EventTarget {
     private measure(item: Measurement): void {
         delete item.answer;
         delete item.error;
+        this.volumes.stop(item);
         if (item.points.length < kindOf(item.kind).least) return;
         const obstacle = obstacleOf(item, this.model.texts);
         try {
             if (obstacle) item.error = obstacle;
+            else if (item.kind === 'volume') {
+                if (this.drawn !== item) void this.volumes.measure(item);
+            }
             else item.answer = this.model.measure(requestOf(item));
         } catch (error) {
             item.error = this.model.texts.sentenceOf(error);

@@ -40,6 +40,14 @@ const fields: Record<MeasureKind, [field: string, name: ResultKey, power: number
         ['perimeter', 'result.perimeter', 1],
         ['deviation', 'result.offPlane', 1],
     ],
+    volume: [
+        ['net', 'result.net', 3],
+        ['cut', 'result.cut', 3],
+        ['fill', 'result.fill', 3],
+        ['area', 'result.areaInPlan', 2],
+        ['areaWithoutPoints', 'result.areaWithoutPoints', 2],
+        ['cell', 'result.cell', 1],
+    ],
     circle: [
         ['radius', 'result.radius', 1],
         ['diameter', 'result.diameter', 1],

@@ -1,6 +1,7 @@
 import type { Model } from '../model.ts';
 import { Problem } from '../texts/message.ts';
-import type { Vector } from '../wasm/values.ts';
+import type { RegionOf, Vector } from '../wasm/values.ts';
+import type { Viewer } from '../wasm/viewer.ts';
 import { ProfilePoints, readProfile } from './profile_points.ts';
 
 /** Points a metre of the line, roughly, at the first look; each further look has four times as many, the last has all. */
@@ -9,7 +10,7 @@ const looks = 3;
 /** The last look is not taken by itself if it promises more. */
 const mostPoints = 3_000_000;
 
-/** Vertical sections along a line that was drawn: the points of the server's clouds within half the width of it. */
+/** Vertical sections along a line that was drawn: the clouds' points within half the width of it, cut by the page's server or, of other clouds, read by the page. */
 export class Profile extends EventTarget {
     line: Vector[] = [];
     width = 1;
@@ -21,8 +22,16 @@ export class Profile extends EventTarget {
     error = '';
     private abort: AbortController | undefined;
 
-    constructor(private readonly model: Model) {
+    constructor(
+        private readonly model: Model,
+        private readonly viewer: Viewer,
+    ) {
         super();
+    }
+
+    /** What it is cut from. */
+    get region(): RegionOf {
+        return { line: this.line.map(([x, y]) => [x, y]), width: this.width };
     }
 
     get isOpen(): boolean {
@@ -70,16 +79,21 @@ export class Profile extends EventTarget {
         this.isLoading = true;
         this.changed();
         try {
-            if (this.addresses('csv').length === 0)
-                throw new Problem('profile.noServer');
-            for (let look = 0, goesOn = true; look <= looks && goesOn; look++) {
+            const served = this.addresses('csv').length > 0;
+            let isWhole = true;
+            for (let look = 0, goesOn = served; look <= looks && goesOn; look++) {
                 const isLast = look === looks;
                 const spacing = this.length / firstLook / 2 ** look;
                 goesOn = await this.look(isLast ? undefined : spacing, abort.signal);
                 if (abort.signal.aborted) return;
-                this.isComplete = isLast && goesOn;
+                isWhole = isLast && goesOn;
                 this.changed();
             }
+            for (const { id } of this.model.clipping.cloudsWithoutApi()) {
+                isWhole = (await this.read(id, abort)) && isWhole;
+                if (abort.signal.aborted) return;
+            }
+            this.isComplete = isWhole;
         } catch (error) {
             if (abort.signal.aborted) return;
             this.error = this.model.texts.sentenceOf(error);
@@ -100,6 +114,29 @@ export class Profile extends EventTarget {
         if (signal.aborted) return false;
         this.points = points;
         return 4 * points.count <= mostPoints || spacing === undefined;
+    }
+
+    /** The points of a cloud that no server cuts, coarse ones first; false if there are more than are shown. */
+    private async read(cloud: number, abort: AbortController): Promise<boolean> {
+        const { points } = this, own = new AbortController();
+        const stop = (): void => own.abort();
+        abort.signal.addEventListener('abort', stop);
+        let told = 0;
+        const { workOnRegion } = await import('../regions/region_work.ts'); // loaded when it is first wanted
+        await workOnRegion(this.model, this.viewer, cloud, { make: 'profile', region: this.region }, {
+            signal: own.signal,
+            piece: (bytes) => {
+                points.addPiece(bytes);
+                if (points.count >= mostPoints) own.abort();
+            },
+            progress: () => {
+                if (points.count === told || abort.signal.aborted) return;
+                told = points.count;
+                this.changed();
+            },
+        });
+        abort.signal.removeEventListener('abort', stop);
+        return !own.signal.aborted;
     }
 
     private attributesOf(name: string): string {

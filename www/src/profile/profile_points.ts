@@ -23,6 +23,27 @@ export class ProfilePoints {
         this.classification[at] = row.class;
     }
 
+    /** Batches of client/region/point_taker.hpp. */
+    addPiece(bytes: Uint8Array<ArrayBuffer>): void {
+        const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+        for (let at = 0; at < bytes.length; ) {
+            const count = view.getUint32(at, true), columns = at + 8;
+            const double = (column: number, row: number): number => view.getFloat64(columns + 8 * (column * count + row), true);
+            const words = columns + 40 * count;
+            for (let row = 0; row < count; row++)
+                this.add({
+                    station: double(0, row),
+                    offset: double(1, row),
+                    x: double(2, row),
+                    y: double(3, row),
+                    z: double(4, row),
+                    colour: view.getUint32(words + 4 * row, true),
+                    class: view.getUint32(words + 4 * (count + row), true) & 0xff,
+                });
+            at = words + 12 * count;
+        }
+    }
+
     /** Of the heights; [0, 1] without points. */
     heights(): [number, number] {
         let low = Infinity, high = -Infinity;

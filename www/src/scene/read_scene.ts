@@ -1,5 +1,5 @@
 import type { Annotation } from '../annotations/annotation.ts';
-import { kindsOfMeasurement, kindOf } from '../measuring/measurement.ts';
+import { kindsOfMeasurement, kindOf, type VolumeBase } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
 import type { Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import { Problem } from '../texts/message.ts';
@@ -84,12 +84,26 @@ function readMeasurement(value: unknown, path: string): SceneMeasurement {
         name: fields.text('name', ''),
         hidden: fields.flag('hidden', false),
         points: fields.list('points', 10_000, readPoint),
+        ...(kind === 'volume' && { base: readBase(fields.optionalObject('base') ?? { from: 'rim' }, `${path}.base`) }),
     };
     fields.finish();
     const { least, points } = kindOf(kind), count = measurement.points.length;
     if (count < least) throw new Problem('scene.fewPoints', { place: path, kind, number: count });
     if (points !== undefined && count > points) throw new Problem('scene.manyPoints', { place: path, kind, number: count });
     return measurement;
+}
+
+function readBase(value: unknown, path: string): VolumeBase {
+    const fields = FieldReader.of(value, path);
+    const from = fields.oneOf('from', ['rim', 'height', 'point']);
+    const base: VolumeBase =
+        from === 'height'
+            ? { from, height: fields.number('height', 0) }
+            : from === 'point'
+              ? { from, point: readPoint(fields.object('point'), `${path}.point`) }
+              : { from };
+    fields.finish();
+    return base;
 }
 
 function readAnnotation(value: unknown, path: string): Annotation {

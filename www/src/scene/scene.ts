@@ -1,5 +1,5 @@
 import type { Annotation } from '../annotations/annotation.ts';
-import type { Measurement } from '../measuring/measurement.ts';
+import type { Measurement, VolumeBase } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
 import type { Camera, Keyframe, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
@@ -24,6 +24,8 @@ export interface SceneMeasurement {
     hidden: boolean;
     /** `point.cloud` is an index of the scene's clouds, -1 for one that is not among them. */
     points: PlacedPoint[];
+    /** Of a volume. */
+    base?: VolumeBase;
 }
 
 export interface Scene {
@@ -55,23 +57,28 @@ export function differences<T extends object>(value: T, defaults: T): Partial<T>
     ) as Partial<T>;
 }
 
-/** Without what a picked point says beyond its place. */
 export function sceneMeasurement(item: Measurement, indexOfCloud: (id: number) => number): SceneMeasurement {
-    const points = item.points.map(
-        ({ integers, position, point, cloudName, crs, epsg, unit, unitMeters, geocentric, scale, offset, spacing }) => ({
-            integers,
-            position,
-            point: { ...point, cloud: indexOfCloud(point.cloud) },
-            cloudName,
-            crs,
-            epsg,
-            unit,
-            unitMeters,
-            geocentric,
-            scale,
-            offset,
-            spacing,
-        }),
-    );
-    return { kind: item.kind, name: item.name, hidden: item.hidden, points };
+    const { kind, name, hidden, base } = item;
+    const placed = (point: PlacedPoint): PlacedPoint => placedIn(point, indexOfCloud);
+    const stored: VolumeBase | undefined = base?.from === 'point' ? { from: 'point', point: placed(base.point) } : base;
+    return { kind, name, hidden, points: item.points.map(placed), ...(stored && { base: stored }) };
+}
+
+/** Without what a picked point says beyond its place. */
+function placedIn(picked: PlacedPoint, indexOfCloud: (id: number) => number): PlacedPoint {
+    const { integers, position, point, cloudName, crs, epsg, unit, unitMeters, geocentric, scale, offset, spacing } = picked;
+    return {
+        integers,
+        position,
+        point: { ...point, cloud: indexOfCloud(point.cloud) },
+        cloudName,
+        crs,
+        epsg,
+        unit,
+        unitMeters,
+        geocentric,
+        scale,
+        offset,
+        spacing,
+    };
 }

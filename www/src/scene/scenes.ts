@@ -1,5 +1,5 @@
 import type { Model } from '../model.ts';
-import type { Limits, Style } from '../wasm/values.ts';
+import type { Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 import { mostSceneBytes, readScene } from './read_scene.ts';
 import { differences, type Scene, type SceneCloud, sceneMeasurement, sceneVersion } from './scene.ts';
@@ -66,10 +66,8 @@ export class Scenes {
             scene.measurements.map((item) => ({
                 ...item,
                 name: item.name || texts.text(`measure.${item.kind}`),
-                points: item.points.map((point) => ({
-                    ...point,
-                    point: { ...point.point, cloud: ids[point.point.cloud] ?? 0 },
-                })),
+                points: item.points.map((point) => placed(point, ids)),
+                ...(item.base?.from === 'point' && { base: { ...item.base, point: placed(item.base.point, ids) } }),
             })),
         );
         model.annotations.replace(
@@ -115,4 +113,9 @@ export class Scenes {
             return id ?? 0;
         });
     }
+}
+
+/** In the cloud that has the index's place in the scene now. */
+function placed(point: PlacedPoint, ids: number[]): PlacedPoint {
+    return { ...point, point: { ...point.point, cloud: ids[point.point.cloud] ?? 0 } };
 }

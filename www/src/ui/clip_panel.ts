@@ -1,13 +1,14 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { headingOf, pointsAddress, withCentre, withHeading, withSize } from '../clipping/boxes.ts';
-import type { ClipBox, Vector } from '../wasm/values.ts';
+import { headingOf, pointsAddress, regionOf, withCentre, withHeading, withSize } from '../clipping/boxes.ts';
+import type { ClipBox, RegionFormat, Vector } from '../wasm/values.ts';
 import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const modes: ClipBox['mode'][] = ['hideOutside', 'hideInside', 'highlight'];
 const formats = ['laz', 'las', 'ply', 'csv'];
+const ownFormats: RegionFormat[] = ['laz', 'las', 'csv'];
 
 /** Clip boxes by number: mode, centre, size, heading; and the points inside as files. */
 export class ClipPanel extends ModelElement {
@@ -65,11 +66,27 @@ export class ClipPanel extends ModelElement {
                 color: var(--accent);
                 margin-inline-start: 0.4rem;
             }
+            .files button {
+                min-height: 1.5rem;
+                padding: 0 0.4rem;
+                font-size: 0.8rem;
+            }
             .add {
                 width: 100%;
             }
         `,
     ];
+
+    private readonly follow = (): void => this.requestUpdate();
+
+    override connectedCallback(): void {
+        super.connectedCallback();
+        this.model.regionFiles.addEventListener('change', this.follow);
+    }
+    override disconnectedCallback(): void {
+        this.model.regionFiles.removeEventListener('change', this.follow);
+        super.disconnectedCallback();
+    }
 
     override render(): TemplateResult {
         const { clipping } = this.model;
@@ -113,7 +130,9 @@ export class ClipPanel extends ModelElement {
             ${heading === undefined
                 ? html`<p class="files">${this.text('clip.turned')}</p>`
                 : this.renderNumbers(this.text('clip.heading'), name, [heading], (_, value) => change(withHeading(box, value)))}
+            <p class="files" data-volume>${this.text('clip.volume', { volume: this.volumeOf(box) })}</p>
             ${clipping.apisOfClouds().map(({ name: cloud, api }) => this.renderFiles(cloud, api, box))}
+            ${clipping.cloudsWithoutApi().map(({ id, name: cloud }) => this.renderOwnFiles(id, cloud, box, index))}
         </li>`;
     }
 
@@ -144,6 +163,33 @@ export class ClipPanel extends ModelElement {
                     />`,
             )}
         </div>`;
+    }
+
+    private volumeOf({ halfSize: [x, y, z] }: ClipBox): string {
+        const volume = 8 * x * y * z;
+        return this.texts.decimals(volume, volume >= 1000 ? 1 : 4);
+    }
+
+    /** The same of a cloud that no server cuts: the page reads the points itself. */
+    private renderOwnFiles(id: number, cloud: string, box: ClipBox, index: number): TemplateResult {
+        const { regionFiles } = this.model, key = `clip ${index} ${id}`, running = regionFiles.of(key);
+        const save = (format: RegionFormat): void =>
+            void regionFiles.save(key, id, regionOf(box), format, `${cloud.replace(/\.stipple$/, '')}-${index + 1}`);
+        return html`<p class="files" data-own=${id}>
+            ${this.text('clip.inside', { cloud })}
+            ${running
+                ? html`<span role="status"
+                          >${this.text('region.making', {
+                              format: running.format.toUpperCase(),
+                              share: Math.round(100 * running.share),
+                              points: running.points,
+                          })}</span
+                      >
+                      <button @click=${() => running.cancel()}>${this.text('region.cancel')}</button>`
+                : ownFormats.map(
+                      (format) => html`<button @click=${() => save(format)}>${format.toUpperCase()}</button>`,
+                  )}
+        </p>`;
     }
 
     /** All points inside, whatever the picture shows of them. */

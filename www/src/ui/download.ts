@@ -5,5 +5,5 @@ export function download(content: Blob, name: string): void {
     link.href = address;
     link.download = name;
     link.click();
-    setTimeout(() => URL.revokeObjectURL(address), 10_000);
+    setTimeout(() => URL.revokeObjectURL(address), 60_000);
 }

@@ -6,6 +6,7 @@ import type { Measuring } from '../measuring/measuring.ts';
 import { resultLines } from '../measuring/results.ts';
 import { displayUnits } from '../measuring/units.ts';
 import { select } from './fields.ts';
+import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 import { followToolbarKeys, keepToolbarStop, stopOf } from './toolbar.ts';
@@ -94,6 +95,21 @@ export class MeasurePanel extends ModelElement {
                 min-height: 1.75rem;
                 font-size: 0.82rem;
                 margin-top: 0.2rem;
+            }
+            .height {
+                display: grid;
+                grid-template-columns: 1fr auto;
+                gap: 0.4rem;
+                margin-top: 0.3rem;
+            }
+            .height input {
+                min-width: 0;
+                font: inherit;
+                color: inherit;
+                background: var(--raised);
+                border: 1px solid var(--line);
+                border-radius: 5px;
+                padding: 0.2rem 0.3rem;
             }
             .error {
                 margin: 0.3rem 0 0;
@@ -230,6 +246,10 @@ export class MeasurePanel extends ModelElement {
                       ${this.text('measure.profile')}
                   </button>`
                 : ''}
+            ${item.kind === 'volume' ? this.renderBase(item) : ''}
+            ${item.share !== undefined
+                ? html`<p class="hint" role="status">${this.text('measure.reading', { share: Math.round(100 * item.share) })}</p>`
+                : ''}
             ${item.error ? html`<p class="error" role="alert">${item.error}</p>` : ''}
             <dl>
                 ${lines.map(
@@ -244,6 +264,48 @@ export class MeasurePanel extends ModelElement {
                 ? html`<p class="error">${this.text('measure.crosses')}</p>`
                 : ''}
         </li>`;
+    }
+
+    /** What a volume's heights are taken from: its rim, or a level plane at a height that is typed or picked. */
+    private renderBase(item: Measurement): TemplateResult {
+        const { measuring } = this, { from } = item.base ?? { from: 'rim' };
+        const heights = item.points.map(({ position }) => position[2]);
+        const height =
+            item.base?.from === 'height'
+                ? item.base.height
+                : item.base?.from === 'point'
+                  ? item.base.point.position[2]
+                  : Math.min(...heights);
+        return html`<div class="base">
+            ${select(
+                this.text('volume.base'),
+                from === 'rim' ? 'rim' : 'plane',
+                (['rim', 'plane'] as const).map((base) => [base, this.text(`volume.${base}`)]),
+                (base) => measuring.setBase(item, base === 'rim' ? { from: 'rim' } : { from: 'height', height }),
+            )}
+            ${from === 'rim'
+                ? ''
+                : html`<div class="height">
+                      <input
+                          type="number"
+                          step="any"
+                          aria-label=${this.text('volume.heightOf', { name: item.name })}
+                          .value=${String(height)}
+                          @change=${(event: Event) =>
+                              measuring.setBase(item, {
+                                  from: 'height',
+                                  height: (event.target as HTMLInputElement).valueAsNumber,
+                              })}
+                      />
+                      <button
+                          aria-pressed=${measuring.isPickingBaseOf(item)}
+                          aria-label=${this.text('volume.pickOf', { name: item.name })}
+                          @click=${() => measuring.pickBase(item)}
+                      >
+                          ${this.text('volume.pick')}
+                      </button>
+                  </div>`}
+        </div>`;
     }
 
     private async copy(item: Measurement): Promise<void> {
@@ -270,12 +332,7 @@ export class MeasurePanel extends ModelElement {
         const { items } = this.measuring;
         const lonLats = format === 'geojson' ? await this.lonLatsOf(items) : undefined;
         if (format === 'geojson' && !lonLats) this.model.notify(this.text('measure.noLonLat'));
-        const address = URL.createObjectURL(new Blob([exportText(items, format, lonLats)], { type }));
-        const link = document.createElement('a');
-        link.href = address;
-        link.download = `measurements.${format}`;
-        link.click();
-        setTimeout(() => URL.revokeObjectURL(address), 10_000);
+        download(new Blob([exportText(items, format, lonLats)], { type }), `measurements.${format}`);
     }
 }
 

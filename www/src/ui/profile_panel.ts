@@ -2,10 +2,13 @@ import { css, html, type PropertyValues, svg, type SVGTemplateResult, type Templ
 
 import type { Profile } from '../profile/profile.ts';
 import { draw, fitted, margin, nearest, panned, type ProfileView, ticks, toPixels, toProfile, zoomed } from '../profile/profile_view.ts';
+import type { RegionFormat } from '../wasm/values.ts';
+import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const formats = ['laz', 'las', 'csv'];
+const ownFormats: RegionFormat[] = ['laz', 'las', 'csv'];
 
 /** The 2D view of a profile: station to the right, height upwards; drag moves, wheel zooms, a click takes a point to measure from. */
 export class ProfilePanel extends ModelElement {
@@ -107,6 +110,8 @@ export class ProfilePanel extends ModelElement {
         this.requestUpdate();
     };
 
+    private readonly followFiles = (): void => this.requestUpdate();
+
     constructor() {
         super();
         this.exaggeration = 1;
@@ -115,9 +120,11 @@ export class ProfilePanel extends ModelElement {
     override connectedCallback(): void {
         super.connectedCallback();
         this.profile.addEventListener('change', this.follow);
+        this.model.regionFiles.addEventListener('change', this.followFiles);
     }
     override disconnectedCallback(): void {
         this.profile.removeEventListener('change', this.follow);
+        this.model.regionFiles.removeEventListener('change', this.followFiles);
         super.disconnectedCallback();
     }
 
@@ -170,6 +177,7 @@ export class ProfilePanel extends ModelElement {
                                 html`<a href=${href} download title=${this.text('profile.allPoints', { name })}>${format.toUpperCase()}</a>`,
                         ),
                 )}
+                ${this.model.clipping.cloudsWithoutApi().map(({ id, name }) => this.renderOwnFiles(id, name))}
                 <a href="" @click=${(event: Event) => this.savePicture(event)}>SVG</a>
                 <button class="quiet close" aria-label=${this.text('profile.close')} @click=${() => profile.close()}>✕</button>
             </div>
@@ -185,6 +193,23 @@ export class ProfilePanel extends ModelElement {
                 ${this.renderAxes()}
             </div>
             <p class="told">${this.tell()}</p>`;
+    }
+
+    /** Files of a cloud that no server cuts. */
+    private renderOwnFiles(id: number, name: string): TemplateResult {
+        const { profile } = this, { regionFiles } = this.model, key = `profile ${id}`, running = regionFiles.of(key);
+        if (running) {
+            const { share, points } = running, format = running.format.toUpperCase();
+            return html`<span role="status">${this.text('region.making', { format, share: Math.round(100 * share), points })}</span>
+                <button @click=${() => running.cancel()}>${this.text('region.cancel')}</button>`;
+        }
+        const save = (format: RegionFormat): void =>
+            void regionFiles.save(key, id, profile.region, format, `${name.replace(/\.stipple$/, '')}-profile`);
+        return html`${ownFormats.map(
+            (format) => html`<button title=${this.text('profile.allPoints', { name })} @click=${() => save(format)}>
+                ${format.toUpperCase()}
+            </button>`,
+        )}`;
     }
 
     override updated(_: PropertyValues): void {
@@ -321,12 +346,7 @@ export class ProfilePanel extends ModelElement {
 <style>${style}</style><rect width="100%" height="100%" fill="#fff"/>
 <image href="${canvas.toDataURL('image/png')}" width="${view.width}" height="${view.height}"/>
 ${content}</svg>\n`;
-        const address = URL.createObjectURL(new Blob([text], { type: 'image/svg+xml' }));
-        const link = document.createElement('a');
-        link.href = address;
-        link.download = 'profile.svg';
-        link.click();
-        setTimeout(() => URL.revokeObjectURL(address), 10_000);
+        download(new Blob([text], { type: 'image/svg+xml' }), 'profile.svg');
     }
 }
 

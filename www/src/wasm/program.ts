@@ -61,6 +61,14 @@ export interface ViewerProgram extends Program {
     _stipple_drawn_style(): Address;
     _stipple_gradients(): Address;
     _stipple_measure(json: Address): Address;
+    _stipple_region_metadata(cloud: number): number;
+    _stipple_region_scan(json: Address): Address;
+    _stipple_region_take(scan: number): number;
+    _stipple_region_message(): Address;
+    _stipple_region_bytes(): Address;
+    _stipple_region_bytes_size(): number;
+    _stipple_region_progress(scan: number): Address;
+    _stipple_region_end(scan: number): void;
     _stipple_project(json: Address): Address;
     _stipple_frame(): number;
     _stipple_frame_took(seconds: number): void;
@@ -88,6 +96,18 @@ export interface ViewerProgram extends Program {
     _stipple_decode_array(job: number, index: number, sizeBytes: number): Address;
     _stipple_decode_done(job: number): void;
     _stipple_decode_failed(job: number, detail: Address): void;
+}
+
+/** client/web/region_exports.cpp. */
+export interface RegionProgram extends Program {
+    _stipple_region_open(metadata: Address, size: number, request: Address): Address;
+    _stipple_region_node(message: Address, messageSize: number, bytes: Address, size: number): Address;
+    _stipple_region_finish(): Address;
+    _stipple_region_points(): number;
+    _stipple_region_piece(): number;
+    _stipple_region_patch(): number;
+    _stipple_region_bytes(): Address;
+    _stipple_region_bytes_size(): number;
 }
 
 export interface DecoderProgram extends Program {

@@ -203,6 +203,45 @@ export interface ViewCounts {
     histograms: Histogram[];
 }
 
+/** A region of a cloud: client/core/region_json.hpp. */
+export type RegionOf =
+    | { box: Omit<ClipBox, 'mode'> }
+    | { polygon: [number, number][]; heights?: [number, number] }
+    | { line: [number, number][]; width: number };
+export type RegionFormat = 'las' | 'laz' | 'csv';
+
+/** Corners, or the place, of what is measured: client/survey/measure_json.hpp. */
+export type RequestPoint = Pick<PlacedPoint, 'integers' | 'scale' | 'offset' | 'spacing'>;
+
+/** What is made of a region's points: client/region/region_work.hpp. */
+export type RegionRequest =
+    | { make: 'file'; format: RegionFormat; region: RegionOf; attributes?: string[]; mostPoints?: number }
+    | { make: 'profile'; region: RegionOf; mostPoints?: number }
+    | {
+          make: 'volume';
+          points: RequestPoint[];
+          geocentric: boolean;
+          base: 'rim' | { height: number } | { point: RequestPoint };
+          cell?: number;
+      };
+export type RegionAnswer = Record<string, number | string | string[]>;
+export interface RegionScan {
+    region: object;
+    attributes: number[];
+}
+export interface RegionScanProgress {
+    nodesDone: number;
+    nodesToDo: number;
+    pointsDone: number;
+    pointsToDo: number;
+    nodesOutside: number;
+    chunksToDo: number;
+    bytesRead: number;
+    hierarchyKnown: boolean;
+    complete: boolean;
+    error: string | null;
+}
+
 /** Where a point of a cloud is, exactly as its file has it, and what measuring from it needs. */
 export interface PlacedPoint {
     integers: Vector;
@@ -229,7 +268,7 @@ export interface PickedPoint extends PlacedPoint {
     distance: number;
 }
 
-export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle';
+export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle' | 'volume';
 
 /** client/survey/measure_json.hpp. */
 export interface MeasureRequest {

@@ -20,6 +20,8 @@ import type {
     NamedView,
     PickAnswer,
     Projection,
+    RegionScan,
+    RegionScanProgress,
     Style,
     Vector,
     ViewCounts,
@@ -207,6 +209,34 @@ export class Viewer {
             if (!answer) throw new Error(error);
             return answer;
         });
+    }
+    /** Of an open cloud, as in its file. */
+    cloudMetadata(id: number): Uint8Array<ArrayBuffer> {
+        const size = this.program._stipple_region_metadata(id);
+        return this.heap.copy(this.program._stipple_region_message(), size);
+    }
+    /** Begins to read all nodes of a region (client/core/region_scan.hpp); its number. */
+    scanRegion(request: RegionScan & { cloud: number }): number {
+        const answer = this.heap.lendTexts([JSON.stringify(request)], (at) =>
+            this.heap.text(this.program._stipple_region_scan(at!)),
+        );
+        if (!/^\d+$/.test(answer)) throw new Error(answer);
+        return Number(answer);
+    }
+    /** The next node that was read. */
+    takeRegionNode(scan: number): { message: Uint8Array<ArrayBuffer>; bytes: Uint8Array<ArrayBuffer> } | undefined {
+        const size = this.program._stipple_region_take(scan);
+        if (size === 0) return undefined;
+        return {
+            message: this.heap.copy(this.program._stipple_region_message(), size),
+            bytes: this.heap.copy(this.program._stipple_region_bytes(), this.program._stipple_region_bytes_size()),
+        };
+    }
+    regionProgress(scan: number): RegionScanProgress {
+        return this.json(this.program._stipple_region_progress(scan));
+    }
+    endRegionScan(scan: number): void {
+        this.program._stipple_region_end(scan);
     }
     /** Where world positions are in the present picture, in pixels of the canvas; null for what is behind the camera. */
     project(positions: Vector[]): (Vector | null)[] {

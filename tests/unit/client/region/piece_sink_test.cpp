@@ -1,0 +1,59 @@
+#include "client/region/piece_sink.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+
+using namespace stipple;
+
+namespace {
+
+Bytes bytesOf(std::size_t count, std::uint8_t first) {
+    Bytes bytes(count);
+    for (std::size_t i = 0; i < count; ++i)
+        bytes[i] = static_cast<std::uint8_t>(first + i);
+    return bytes;
+}
+
+} // namespace
+
+TEST_CASE("pieces and patches together are the file that memory would have") {
+    std::mt19937 random(3);
+    for (int round = 0; round < 50; ++round) {
+        auto pieces = std::make_shared<Pieces>();
+        PieceSink sink(pieces);
+        Bytes expected, taken;
+        MemorySink memory(expected);
+        for (int step = 0; step < 40; ++step) {
+            Bytes bytes = bytesOf(random() % 50, static_cast<std::uint8_t>(random()));
+            if (random() % 3 == 0 && expected.size() > bytes.size()) {
+                std::uint64_t at = random() % (expected.size() - bytes.size());
+                REQUIRE(memory.overwrite(at, bytes).ok());
+                REQUIRE(sink.overwrite(at, bytes).ok());
+            } else {
+                REQUIRE(memory.append(bytes).ok());
+                REQUIRE(sink.append(bytes).ok());
+            }
+            if (random() % 4 == 0) {
+                Bytes piece = pieces->take();
+                taken.insert(taken.end(), piece.begin(), piece.end());
+            }
+        }
+        Bytes piece = pieces->take();
+        taken.insert(taken.end(), piece.begin(), piece.end());
+        for (const auto& [offset, bytes] : pieces->patches)
+            std::copy(bytes.begin(), bytes.end(), taken.begin() + static_cast<std::ptrdiff_t>(offset));
+        CHECK(taken == expected);
+        CHECK(sink.sizeBytes() == expected.size());
+    }
+}
+
+TEST_CASE("bytes that were never there can't be written over") {
+    auto pieces = std::make_shared<Pieces>();
+    PieceSink sink(pieces);
+    REQUIRE(sink.append(bytesOf(10, 0)).ok());
+    pieces->take();
+    CHECK(sink.overwrite(0, bytesOf(10, 1)).ok());
+    CHECK_FALSE(sink.overwrite(0, bytesOf(11, 1)).ok());
+    CHECK_FALSE(sink.overwrite(~0ull, bytesOf(2, 1)).ok());
+}
