@@ -153,7 +153,8 @@ TEST_CASE("the page has content types, revalidation, immutable assets and a poli
     CHECK(index.field("cache-control") == "no-cache");
     std::string policy = index.field("content-security-policy");
     CHECK(policy.find("'wasm-unsafe-eval'") != std::string::npos);
-    CHECK(policy.find("worker-src 'self' blob:") != std::string::npos);
+    CHECK(policy.find("worker-src 'self'") != std::string::npos);
+    CHECK(policy.find("worker-src 'self' blob:") == std::string::npos);
     CHECK(index.field("x-content-type-options") == "nosniff");
     CHECK(ask("GET /", "If-None-Match: " + index.field("etag")).status == 304);
     CHECK(ask("GET /index.html").body == index.body);
