@@ -52,7 +52,7 @@ describe('by the keyboard alone', () => {
         await page.keyboard.press('ArrowRight');
         assert.equal((await focused(page)).name, 'Height');
         await page.keyboard.press('End');
-        assert.equal((await focused(page)).name, 'Point');
+        assert.equal((await focused(page)).name, 'Volume');
         await page.keyboard.press('Home');
         await page.keyboard.press('Enter');
         assert.equal((await focused(page)).tag, 'canvas');
