@@ -11,7 +11,7 @@ root=$(realpath "$(dirname "$0")/..")
 stipple=${STIPPLE:-$root/build/release/client/headless/stipple}
 [ -x "$stipple" ] || fail "$stipple is not there; scripts/test.sh builds it"
 [ $# -gt 0 ] || fail "say which cloud: CLOUD.stipple [MBIT...]"
-cloud=$(realpath -e "$1") || fail "$1 is not there" 3
+cloud=$(realpath -e "$1" 2> /dev/null) || fail "$1 is not there" 3
 shift
 [ $# -gt 0 ] || set -- 5 50 500
 for tool in ip tc node; do command -v "$tool" > /dev/null || fail "$tool is missing (Debian: iproute2, nodejs)"; done
