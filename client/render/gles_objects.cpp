@@ -24,41 +24,60 @@ Error shaderError(const char* what, const std::string& log) {
             "OpenGL ES 3.0", "update the graphics driver"};
 }
 
-// Compiles and attaches; the program keeps the shader alive from there.
-Status attachShader(GLuint program, GLenum kind, const std::string& defines, const char* text) {
+// Has it compiled, and attaches it; the program keeps the shader alive from there.
+void attachShader(GLuint program, GLenum kind, const std::string& defines, const char* text) {
     GLuint shader = glCreateShader(kind);
     std::string head = "#version 300 es\n" + defines;
     std::array<const GLchar*, 2> texts{head.c_str(), text};
     glShaderSource(shader, static_cast<GLsizei>(texts.size()), texts.data(), nullptr);
     glCompileShader(shader);
-    GLint compiled = GL_FALSE;
-    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
-    Status status;
-    if (compiled)
-        glAttachShader(program, shader);
-    else
-        status = shaderError(kind == GL_VERTEX_SHADER ? "a vertex shader does not compile"
-                                                      : "a fragment shader does not compile",
-                             logOf(shader, glGetShaderiv, glGetShaderInfoLog));
+    glAttachShader(program, shader);
     glDeleteShader(shader);
-    return status;
+}
+
+Status shaderStatus(GLuint shader) {
+    GLint compiled = GL_FALSE, kind = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
+    if (compiled)
+        return {};
+    glGetShaderiv(shader, GL_SHADER_TYPE, &kind);
+    return shaderError(kind == GL_VERTEX_SHADER ? "a vertex shader does not compile"
+                                                : "a fragment shader does not compile",
+                       logOf(shader, glGetShaderiv, glGetShaderInfoLog));
 }
 
 } // namespace
 
-Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
-                            const char* captured) {
+Program startProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
+                     const char* captured) {
     Program program;
     GLuint id = program.make();
-    STIPPLE_CHECK(attachShader(id, GL_VERTEX_SHADER, defines, vertexText));
-    STIPPLE_CHECK(attachShader(id, GL_FRAGMENT_SHADER, defines, fragmentText));
+    attachShader(id, GL_VERTEX_SHADER, defines, vertexText);
+    attachShader(id, GL_FRAGMENT_SHADER, defines, fragmentText);
     if (captured != nullptr)
         glTransformFeedbackVaryings(id, 1, &captured, GL_INTERLEAVED_ATTRIBS);
     glLinkProgram(id);
+    return program;
+}
+
+Status checkProgram(const Program& program) {
     GLint linked = GL_FALSE;
-    glGetProgramiv(id, GL_LINK_STATUS, &linked);
-    if (!linked)
-        return shaderError("a shader program does not link", logOf(id, glGetProgramiv, glGetProgramInfoLog));
+    glGetProgramiv(program.id(), GL_LINK_STATUS, &linked);
+    if (linked)
+        return {};
+    std::array<GLuint, 2> shaders{};
+    GLsizei count = 0;
+    glGetAttachedShaders(program.id(), static_cast<GLsizei>(shaders.size()), &count, shaders.data());
+    for (GLsizei i = 0; i < count; ++i)
+        STIPPLE_CHECK(shaderStatus(shaders[static_cast<std::size_t>(i)]));
+    return shaderError("a shader program does not link",
+                       logOf(program.id(), glGetProgramiv, glGetProgramInfoLog));
+}
+
+Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
+                            const char* captured) {
+    Program program = startProgram(defines, vertexText, fragmentText, captured);
+    STIPPLE_CHECK(checkProgram(program));
     return program;
 }
 

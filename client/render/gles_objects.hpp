@@ -64,9 +64,15 @@ using VertexArray = Object<VertexArrayKind>;
 using Framebuffer = Object<FramebufferKind>;
 using Program = Object<ProgramKind>;
 
-// Compiles and links. `defines` ("#define CIRCLE\n…") goes between the "#version 300 es" line and the texts.
-// Error: unsupported, with the driver's log.
-// `captured`: an output of the vertex shader for transform feedback; nullptr: none.
+// Has it compiled and linked, and waits for neither: drivers, and browsers' processes, do that beside.
+// `defines`
+// ("#define CIRCLE\n…") goes between the "#version 300 es" line and the texts. `captured`: an output of the
+// vertex shader for transform feedback; nullptr: none.
+Program startProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
+                     const char* captured = nullptr);
+// Waits for it. Error: unsupported, with the driver's log.
+Status checkProgram(const Program& program);
+// Both.
 Result<Program> makeProgram(const std::string& defines, const char* vertexText, const char* fragmentText,
                             const char* captured = nullptr);
 

@@ -39,20 +39,30 @@ PointVariant PointVariant::of(const RasterFrame& frame, const DrawNode& node) {
     return variant;
 }
 
+void PointPrograms::start(const PointVariant& variant) {
+    if (!made_.contains(variant) && !started_.contains(variant))
+        started_.emplace(variant, PointProgram::start(variant));
+}
+
 Result<const PointProgram*> PointPrograms::get(const PointVariant& variant) {
     auto found = made_.find(variant);
     if (found == made_.end()) {
-        STIPPLE_TRY(program, PointProgram::make(variant));
+        start(variant);
+        STIPPLE_TRY(program, PointProgram::finish(std::move(started_.extract(variant).mapped())));
         found = made_.emplace(variant, std::move(program)).first;
     }
     return &found->second;
 }
 
-Result<PointProgram> PointProgram::make(const PointVariant& variant) {
+Program PointProgram::start(const PointVariant& variant) {
     std::string vertex = cat(variant.walksOctree() ? shader_texts::octree : "", shader_texts::sprite,
                              variant.expand ? shader_texts::expandVertex : shader_texts::pointsVertex);
-    STIPPLE_TRY(program, makeProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
-                                     variant.captureLevels ? "vLevels" : nullptr));
+    return startProgram(definesFor(variant), vertex.c_str(), shader_texts::pointsFragment,
+                        variant.captureLevels ? "vLevels" : nullptr);
+}
+
+Result<PointProgram> PointProgram::finish(Program program) {
+    STIPPLE_CHECK(checkProgram(program));
     PointProgram made;
     auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
     made.cell = at("uCell");
@@ -179,9 +189,13 @@ void PointProgram::setOctreePlace(std::uint32_t place, const ResidentNode& node)
     glUniform1i(nodeBits, node.nodeBits);
 }
 
-Result<ResolveProgram> ResolveProgram::make(bool splats) {
-    STIPPLE_TRY(program, makeProgram(splats ? "#define SPLATS\n" : "", shader_texts::resolveVertex,
-                                     shader_texts::resolveFragment));
+Program ResolveProgram::start(bool splats) {
+    return startProgram(splats ? "#define SPLATS\n" : "", shader_texts::resolveVertex,
+                        shader_texts::resolveFragment);
+}
+
+Result<ResolveProgram> ResolveProgram::finish(Program program) {
+    STIPPLE_CHECK(checkProgram(program));
     ResolveProgram made;
     auto at = [&](const char* name) { return glGetUniformLocation(program.id(), name); };
     made.colour = at("uColour");

@@ -51,7 +51,8 @@ struct PointProgram {
     GLint centreColours, centreDepths, centrePlaces, columns;
     GLint centrePoints, centreWindow; // of both
 
-    static Result<PointProgram> make(const PointVariant& variant);
+    static Program start(const PointVariant& variant); // waits for nothing
+    static Result<PointProgram> finish(Program program);
     void useFor(const RasterFrame& frame) const;
     void setNode(const RasterNode& node) const;
     // Of programs that write identities: what stands for the node, and the window's lower left pixel.
@@ -66,9 +67,11 @@ struct PointProgram {
 // Point programs, each made when it is first asked for.
 class PointPrograms {
   public:
+    void start(const PointVariant& variant); // one that will be asked for, without waiting for it
     Result<const PointProgram*> get(const PointVariant& variant);
 
   private:
+    std::map<PointVariant, Program> started_;
     std::map<PointVariant, PointProgram> made_;
 };
 
@@ -77,7 +80,8 @@ struct ResolveProgram {
     GLint colour, depth, background, nearBits, depthShift, neighbours, offsets, power;
 
     // `splats`: from sums of weighted colours.
-    static Result<ResolveProgram> make(bool splats);
+    static Program start(bool splats);
+    static Result<ResolveProgram> finish(Program program);
     void useFor(const RasterFrame& frame, const EdlSetup& edl,
                 const std::array<std::uint8_t, 3>& backgroundColour) const;
 };

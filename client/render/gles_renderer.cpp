@@ -62,16 +62,13 @@ class Gles3Renderer final : public GlesRenderer {
         floatBlending_ = std::min(most, floatBlending());
         pointPixels_ = std::min(mostPointPixels, largestPoint());
         pictureSide_ = largestSide();
-        // What does not compile is told at once.
-        for (bool lowWords : {false, true})
-            for (bool circle : {false, true})
-                STIPPLE_CHECK(compile({.lowWords = lowWords, .circle = circle}));
-        STIPPLE_TRY(resolve, ResolveProgram::make(false));
-        resolve_ = std::move(resolve);
-        STIPPLE_TRY(resolveSums, ResolveProgram::make(true));
-        resolveSums_ = std::move(resolveSums);
+        // Most pictures need these, so they are compiled while points are still on their way. Nothing here
+        // waits for the GPU: what does not compile is told by draw().
+        for (bool growing : {true, false})
+            pointPrograms_.start({.circle = true, .growing = growing});
+        startedResolve_ = ResolveProgram::start(false);
         emptyArray_.make();
-        return checkGl("preparing to draw");
+        return {};
     }
 
     Status draw(FramePlan& plan, unsigned target) override {
@@ -80,6 +77,8 @@ class Gles3Renderer final : public GlesRenderer {
         EdlSetup edl = edlSetup(plan.style.edl);
         bool blends = frame.splats && floatBlending_ != FloatBlending::none;
         limitation_ = limitationOf(frame, blends);
+        if (plan.nodes.empty())
+            return drawNothing(plan, target);
         bool direct = !edl.enabled && !blends && directTo(target);
         if (!direct)
             STIPPLE_CHECK(points_.resize(plan.width, plan.height));
@@ -95,7 +94,7 @@ class Gles3Renderer final : public GlesRenderer {
         }
         if (!direct) {
             glBindFramebuffer(GL_FRAMEBUFFER, target);
-            resolve(plan, frame, edl, blends);
+            STIPPLE_CHECK(resolve(plan, frame, edl, blends));
             plan.counters.passesRun += 1;
         }
         plan.counters.passesSkipped += edl.enabled ? 0 : 1;
@@ -142,10 +141,12 @@ class Gles3Renderer final : public GlesRenderer {
     std::string_view limitation() const override { return limitation_; }
 
   private:
-    Status compile(const PointVariant& variant) {
-        STIPPLE_TRY(program, pointPrograms_.get(variant));
-        (void)program;
-        return {};
+    // The background alone.
+    Status drawNothing(FramePlan& plan, GLuint target) {
+        glBindFramebuffer(GL_FRAMEBUFFER, target);
+        clear(plan);
+        plan.counters.passesSkipped += 2; // points, and what makes a picture of them
+        return nodes_.endFrame(plan.gpuBytes) ? checkGl("drawing nothing") : Status();
     }
 
     Status checkSize(const FramePlan& plan) const {
@@ -332,10 +333,22 @@ class Gles3Renderer final : public GlesRenderer {
         return {};
     }
 
-    void resolve(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl, bool blends) {
+    Result<const ResolveProgram*> resolveProgram(bool sums) {
+        std::optional<ResolveProgram>& made = sums ? resolveSums_ : resolve_;
+        if (!made) {
+            STIPPLE_TRY(program,
+                        ResolveProgram::finish(sums || !startedResolve_ ? ResolveProgram::start(sums)
+                                                                        : std::move(startedResolve_)));
+            made = std::move(program);
+        }
+        return &*made;
+    }
+
+    Status resolve(const FramePlan& plan, const RasterFrame& frame, const EdlSetup& edl, bool blends) {
+        STIPPLE_TRY(program, resolveProgram(blends));
         glViewport(0, 0, frame.width, frame.height);
         glDisable(GL_DEPTH_TEST);
-        (blends ? resolveSums_ : resolve_).useFor(frame, edl, plan.style.background);
+        program->useFor(frame, edl, plan.style.background);
         glActiveTexture(GL_TEXTURE1);
         glBindTexture(GL_TEXTURE_2D, points_.depth.id());
         glActiveTexture(GL_TEXTURE0);
@@ -346,11 +359,13 @@ class Gles3Renderer final : public GlesRenderer {
         glBindTexture(GL_TEXTURE_2D, 0);
         glActiveTexture(GL_TEXTURE1);
         glBindTexture(GL_TEXTURE_2D, 0);
+        return {};
     }
 
     PointPrograms pointPrograms_;
     OctreeTexture octree_;
-    ResolveProgram resolve_, resolveSums_;
+    Program startedResolve_;
+    std::optional<ResolveProgram> resolve_, resolveSums_;
     VertexArray emptyArray_;
     PointTarget points_;
     CentreTarget centres_; // delayed expansion

@@ -86,6 +86,22 @@ TEST_CASE("without eye-dome lighting GLES draws straight to its target, in one p
     CHECK(plan.counters.passesSkipped == 0);
 }
 
+TEST_CASE("a picture without points is GLES's background, and no pass runs for it", "[gles]") {
+    Gles gles;
+    if (!gles)
+        return;
+    Style style = plainStyle(2);
+    style.edl.enabled = true;
+    style.background = {200, 13, 77};
+    FramePlan plan = testPlan({}, {}, style);
+    Image image = gles.draw(plan);
+    for (int y = 0; y < plan.height; ++y)
+        for (int x = 0; x < plan.width; ++x)
+            REQUIRE(pixel(image, x, y) == std::array<int, 3>{200, 13, 77});
+    CHECK(plan.counters.passesRun == 0);
+    CHECK(plan.counters.passesSkipped == 2);
+}
+
 TEST_CASE("hard cases look the same in GLES and in software", "[gles]") {
     Gles gles;
     if (!gles)
