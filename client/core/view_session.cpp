@@ -95,25 +95,27 @@ class Session final : public ViewSession {
     }
     void refineAtRest() override { dirty_ |= pace_.reset(); }
 
-    bool update(std::chrono::milliseconds wait) override {
+    void load(std::chrono::milliseconds wait) override {
         loading_.deliver(dirty_ || planDirty_ ? std::chrono::milliseconds{} : wait);
         SessionLoading::Arrivals arrivals = loading_.takeArrivals();
         dirty_ |= arrivals.changed;
         for (CloudId id : arrivals.failed)
             forget(id);
         bool asksMore = loading_.regionScans().advance(loading_.clouds());
-        bool selected = dirty_;
         if (unusedSince_ && now_() - *unusedSince_ > unusedLife)
             dropUnused();
+        ++(dirty_ ? counters_.selectionsRun : counters_.selectionsSkipped);
         if (dirty_)
             selectAndWant();
         else if (asksMore || std::exchange(regionsChanged_, false))
             wantLoads();
-        ++(selected ? counters_.selectionsRun : counters_.selectionsSkipped);
         loading_.start(limits_);
-        bool isDue = selected || planDirty_;
-        planDirty_ = false; // unless something is left to the next frame
-        bool drawn = isDue && renewPlan();
+    }
+
+    bool update(std::chrono::milliseconds wait) override {
+        load(wait);
+        // Unless something is left to the next frame, which renewPlan() says.
+        bool drawn = std::exchange(planDirty_, false) && renewPlan();
         ++(drawn ? counters_.framesDrawn : counters_.framesSkipped);
         return drawn;
     }
@@ -230,6 +232,7 @@ class Session final : public ViewSession {
 
     void selectAndWant() {
         dirty_ = false;
+        planDirty_ = true;
         ++frame_;
         updateNeeds();
         updateWatched();
@@ -585,7 +588,7 @@ class Session final : public ViewSession {
     std::vector<std::string> watched_; // attributes
 
     bool dirty_ = true;           // a selection could come out differently
-    bool planDirty_ = false;      // the style changed in what shows only
+    bool planDirty_ = false;      // selected anew, or the style changed in what shows only
     bool regionsChanged_ = false; // a scan was ended
     std::uint64_t frame_ = 0;
     std::optional<std::chrono::steady_clock::time_point> unusedSince_; // something may be

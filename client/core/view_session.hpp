@@ -107,6 +107,9 @@ class ViewSession {
     // Takes arrivals, waiting up to `wait` for the first when something is on its way; selects and requests
     // again if anything changed. True: plan() is new and should be drawn. False: the last picture stands.
     virtual bool update(std::chrono::milliseconds wait = {}) = 0;
+    // The first half of update(): all but the plan, which the next update() renews. For programs whose frames
+    // are long in coming: what has arrived is worked off, and more is asked for, in between.
+    virtual void load(std::chrono::milliseconds wait = {}) = 0;
     virtual const FramePlan& plan() const = 0;
     // Every cloud is open or failed, everything wanted is in plan(), failed for good or belongs to a cloud
     // that is interrupted, nothing is on its way.

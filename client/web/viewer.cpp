@@ -47,7 +47,7 @@ Result<std::unique_ptr<Viewer>> Viewer::create() {
 }
 
 CloudId Viewer::add(std::unique_ptr<ByteSource> source, const std::string& name) {
-    if (session_->clouds().empty())
+    if (session_->clouds().empty() && !cameraWasSet_)
         pendingView_ = NamedView::iso;
     return session_->addCloud(std::move(source), name);
 }
@@ -63,6 +63,7 @@ CloudId Viewer::addFile(std::uint32_t file, const std::string& name, std::uint64
 void Viewer::removeCloud(CloudId id) {
     session_->removeCloud(id);
     decoder_->forgetCloud(id);
+    cameraWasSet_ &= !session_->clouds().empty();
 }
 
 void Viewer::setVisible(CloudId id, bool visible) {
@@ -92,6 +93,7 @@ void Viewer::resize(int width, int height) {
 Status Viewer::setCamera(std::string_view json) {
     STIPPLE_TRY(camera, cameraFromJson(json, session_->camera()));
     session_->setCamera(camera);
+    cameraWasSet_ = true;
     pendingView_.reset();
     return {};
 }
@@ -216,6 +218,14 @@ void Viewer::applyPendingView() {
         return;
     session_->setCamera(namedCamera(*pendingView_, content, aspect(), session_->camera().projection));
     pendingView_.reset();
+}
+
+void Viewer::load() {
+    session_->load();
+    if (!pendingViewIsDue())
+        return;
+    applyPendingView();
+    session_->load();
 }
 
 bool Viewer::frame() {

@@ -114,6 +114,7 @@ class Viewer {
 
     // Takes arrivals, selects, and draws if the picture changed; true if it drew. An error of the renderer is
     // kept for drawError().
+    void load(); // works off what arrived and asks for more, without drawing
     bool frame();
     // See ViewSession.
     void frameTook(double seconds) { session_->frameTook(seconds); }
@@ -152,6 +153,7 @@ class Viewer {
     FramePlan drawn_;
     int width_ = 1, height_ = 1;
     std::optional<NamedView> pendingView_ = NamedView::iso; // shown as soon as a cloud is ready
+    bool cameraWasSet_ = false; // by the page, since there was no cloud: the first one keeps it
     bool drawAgain_ = false;
     std::optional<Error> drawError_;
     std::optional<PickHit> picked_; // whose values are on their way

@@ -172,6 +172,9 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_project(const char* json) {
 }
 
 // Frames.
+EMSCRIPTEN_KEEPALIVE void stipple_load() {
+    viewer->load();
+}
 EMSCRIPTEN_KEEPALIVE int stipple_frame() {
     return viewer->frame() ? 1 : 0;
 }

@@ -119,7 +119,7 @@ export class Model extends EventTarget {
         requests = new Requests(),
     ): Promise<Model> {
         let model: Model | undefined;
-        const viewer = await Viewer.create(canvas, () => model?.wake(), requests).catch((error: unknown) => {
+        const viewer = await Viewer.create(canvas, () => model?.frames.loadSoon(), requests).catch((error: unknown) => {
             throw canvas.getContext('webgl2') ? error : new Problem('page.noWebgl');
         });
         return (model = new Model(canvas, viewer, texts, server, requests));
@@ -160,13 +160,13 @@ export class Model extends EventTarget {
         if (opened !== undefined) return opened;
         const id = this.viewer.addUrl(new URL(address, document.baseURI).href, name);
         this.addresses.set(address, id);
-        this.wake();
+        this.frames.loadSoon();
         return id;
     }
 
     openFile(file: File): number {
         const id = this.viewer.addFile(file);
-        this.wake();
+        this.frames.loadSoon();
         return id;
     }
 

@@ -5,7 +5,13 @@ const retryPauseMs = 200;
 /** So long after the last frame the camera is at rest. */
 const restPauseMs = 250;
 
-/** The frame loop. It runs only after something was changed or arrived; a still picture costs nothing. */
+/** Of the page's time, loading between frames takes up to one part in so many. */
+const loadShare = 4;
+
+/**
+ * The frame loop. It runs only after something was changed or arrived; a still picture costs nothing. What arrives is worked
+ * off, and more is asked for, between frames as well: they can be long in coming where drawing is slow.
+ */
 export class Frames {
     /** Frames are timed while the camera moves, to hold a frame time. */
     isTimed = false;
@@ -15,6 +21,9 @@ export class Frames {
     private atRest = true;
     private restTimer: ReturnType<typeof setTimeout> | undefined;
     private lookAgainTimer: ReturnType<typeof setTimeout> | undefined;
+    private loadTimer: ReturnType<typeof setTimeout> | undefined;
+    /** When loading may take of the page's time again. */
+    private nextLoad = 0;
     private settledWaiters: (() => void)[] = [];
 
     /** `done` is called after each turn of the loop: `drew` says whether the picture is a new one. */
@@ -28,6 +37,21 @@ export class Frames {
         if (this.isDue || this.isStopped) return;
         this.isDue = true;
         requestAnimationFrame(() => this.draw());
+    }
+
+    /** Something came that was asked for, or is to be asked for: that does not wait for the frame. */
+    loadSoon(): void {
+        this.wake();
+        if (this.isStopped) return;
+        this.loadTimer ??= setTimeout(() => this.load(), Math.max(0, this.nextLoad - performance.now()));
+    }
+
+    private load(): void {
+        this.loadTimer = undefined;
+        const start = performance.now();
+        this.viewer.load();
+        const end = performance.now();
+        this.nextLoad = end + (loadShare - 1) * (end - start);
     }
 
     /** The camera moves. */
@@ -48,6 +72,7 @@ export class Frames {
         this.isStopped = true;
         clearTimeout(this.restTimer);
         clearTimeout(this.lookAgainTimer);
+        clearTimeout(this.loadTimer);
         this.settledWaiters.splice(0).forEach((resolve) => resolve());
     }
 
@@ -55,6 +80,8 @@ export class Frames {
     draw(): void {
         this.isDue = false;
         if (this.isStopped) return;
+        clearTimeout(this.loadTimer);
+        this.loadTimer = undefined;
         const start = performance.now();
         const drew = this.viewer.frame();
         if (drew && !this.atRest && this.isTimed) this.time(start);

@@ -25,7 +25,7 @@ export class Host {
     private lastFile = 0;
     private program!: ViewerProgram;
     private heap!: Heap;
-    private decoders: DecoderPool | undefined;
+    private readonly decoders: DecoderPool;
     private readonly stored: StoredFiles;
 
     constructor(
@@ -33,24 +33,25 @@ export class Host {
         private readonly sending: Requests,
     ) {
         this.stored = new StoredFiles(sending);
+        // They start while the viewer's program is on its way.
+        this.decoders = new DecoderPool({
+            decoded: (job, message, arrays) => this.decoded(job, message, arrays),
+            failed: (job, detail) =>
+                this.heap.lendTexts([detail], (at) => this.program._stipple_decode_failed(job, at!)),
+        });
     }
 
     /** Starts with the program that this host serves. */
     attach(program: ViewerProgram): Heap {
         this.program = program;
         this.heap = new Heap(program);
-        this.decoders = new DecoderPool({
-            decoded: (job, message, arrays) => this.decoded(job, message, arrays),
-            failed: (job, detail) =>
-                this.heap.lendTexts([detail], (at) => program._stipple_decode_failed(job, at!)),
-        });
         return this.heap;
     }
 
     dispose(): void {
         this.requests.forEach((request) => request.abort());
         this.requests.clear();
-        this.decoders?.dispose();
+        this.decoders.dispose();
     }
 
     keepFile(file: File): number {
@@ -86,15 +87,15 @@ export class Host {
     }
 
     describeCloud(cloud: number, metadata: Uint8Array): void {
-        this.decoders!.describe(cloud, metadata);
+        this.decoders.describe(cloud, metadata);
     }
 
     forgetCloud(cloud: number): void {
-        this.decoders!.forget(cloud);
+        this.decoders.forget(cloud);
     }
 
     decode(job: number, message: Uint8Array, picture: Uint8Array, attributes: Uint8Array): void {
-        this.decoders!.decode(job, message, picture, attributes);
+        this.decoders.decode(job, message, picture, attributes);
     }
 
     private async fetchRange(

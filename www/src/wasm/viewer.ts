@@ -38,29 +38,18 @@ export class Viewer {
         private readonly host: Host,
     ) {}
 
-    /** `wake` is called when something arrived and a frame is due; `requests` is how clouds are asked for. */
+    /** `wake` is called when something arrived (load() and a frame are due); `requests` is how clouds are asked for. */
     static async create(canvas: HTMLCanvasElement, wake: () => void, requests: Requests): Promise<Viewer> {
-        const compiled = await compiledOnce(viewerUrl);
         const host = new Host(wake, requests);
-        const program = await new Promise<ViewerProgram>((resolve, reject) => {
-            const options: ProgramOptions = {
-                canvas,
-                host,
-                instantiateWasm: (imports, receive) => {
-                    WebAssembly.instantiate(compiled, imports).then(receive, reject); // out of memory, for one
-                    return {};
-                },
-            };
-            createViewer(options).then((made) => resolve(made as ViewerProgram), reject);
-        });
-        const viewer = new Viewer(program, host.attach(program), host);
         try {
+            const program = await instantiate(canvas, host);
+            const viewer = new Viewer(program, host.attach(program), host);
             viewer.expect(program._stipple_create());
+            return viewer;
         } catch (error) {
             host.dispose();
             throw error;
         }
-        return viewer;
     }
 
     dispose(): void {
@@ -245,7 +234,11 @@ export class Viewer {
         );
     }
 
-    /** True if it drew. */
+    /** Works off what arrived and asks for more, without drawing. */
+    load(): void {
+        this.program._stipple_load();
+    }
+    /** The same, and draws what is new; true if anything was. */
     frame(): boolean {
         return this.program._stipple_frame() !== 0;
     }
@@ -287,4 +280,19 @@ export class Viewer {
         const sentence = this.heap.text(at);
         if (sentence !== '') throw new Error(sentence);
     }
+}
+
+async function instantiate(canvas: HTMLCanvasElement, host: Host): Promise<ViewerProgram> {
+    const compiled = await compiledOnce(viewerUrl);
+    return new Promise((resolve, reject) => {
+        const options: ProgramOptions = {
+            canvas,
+            host,
+            instantiateWasm: (imports, receive) => {
+                WebAssembly.instantiate(compiled, imports).then(receive, reject); // out of memory, for one
+                return {};
+            },
+        };
+        createViewer(options).then((made) => resolve(made as ViewerProgram), reject);
+    });
 }
