@@ -54,17 +54,6 @@ export class AnnotationPanel extends ModelElement {
                 display: grid;
                 gap: 0.4rem;
             }
-            .edit input,
-            .edit textarea {
-                width: 100%;
-                font: inherit;
-                font-size: 0.85rem;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.25rem 0.4rem;
-            }
             .ways {
                 display: flex;
                 flex-wrap: wrap;
@@ -78,15 +67,8 @@ export class AnnotationPanel extends ModelElement {
         `,
     ];
 
-    private readonly follow = (): void => this.requestUpdate();
-
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.model.annotations.addEventListener('change', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.model.annotations.removeEventListener('change', this.follow);
-        super.disconnectedCallback();
+    protected override sources(): EventTarget[] {
+        return [this.model.annotations];
     }
 
     override render(): TemplateResult {

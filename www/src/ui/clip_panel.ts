@@ -48,13 +48,7 @@ export class ClipPanel extends ModelElement {
                 appearance: none;
             }
             .numbers input {
-                width: 100%;
-                min-width: 0;
-                font: inherit;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
+                font-size: inherit;
                 padding: 0.2rem 0.3rem;
             }
             .files {
@@ -77,15 +71,8 @@ export class ClipPanel extends ModelElement {
         `,
     ];
 
-    private readonly follow = (): void => this.requestUpdate();
-
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.model.regionFiles.addEventListener('change', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.model.regionFiles.removeEventListener('change', this.follow);
-        super.disconnectedCallback();
+    protected override sources(): EventTarget[] {
+        return [this.model.regionFiles];
     }
 
     override render(): TemplateResult {

@@ -39,34 +39,20 @@ export class ColourPanel extends ModelElement {
                 gap: 1.3rem;
             }
             .colour {
-                width: 100%;
                 height: 2rem;
                 padding: 2px;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 6px;
             }
             .range {
                 display: grid;
                 grid-template-columns: 1fr 1fr;
                 gap: 0.4rem;
             }
-            input[type='number'],
-            textarea {
-                font: inherit;
-                color: inherit;
-                width: 100%;
-                min-width: 0;
+            input[type='number'] {
                 min-height: 2rem;
-                padding: 0 0.4rem;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 6px;
             }
             textarea {
                 direction: ltr;
                 min-height: 5rem;
-                padding: 0.4rem;
                 font:
                     0.75rem ui-monospace,
                     monospace;

@@ -1,12 +1,13 @@
 import { css, html, type TemplateResult } from 'lit';
 
 import { ModelElement } from './model_element.ts';
-import { controlStyles } from './shared_styles.ts';
+import { controlStyles, factStyles } from './shared_styles.ts';
 
 /** The counters of client/core/counters.hpp under their own names. */
 export class CountersPanel extends ModelElement {
     static override styles = [
         controlStyles,
+        factStyles,
         css`
             h2 {
                 margin-top: 0.9rem;
@@ -15,19 +16,8 @@ export class CountersPanel extends ModelElement {
                 margin-top: 0;
             }
             dl {
-                display: grid;
                 grid-template-columns: 1fr auto;
-                gap: 0.15rem 1.2rem;
                 margin: 0;
-                font-size: 0.82rem;
-            }
-            dt {
-                color: var(--muted);
-            }
-            dd {
-                margin: 0;
-                text-align: end;
-                font-variant-numeric: tabular-nums;
             }
         `,
     ];

@@ -46,13 +46,6 @@ export class FilmPanel extends ModelElement {
             }
             input[type='number'] {
                 width: 4.2rem;
-                font: inherit;
-                font-size: 0.85rem;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.2rem 0.3rem;
             }
             .seek {
                 margin-top: 0.4rem;
@@ -65,19 +58,12 @@ export class FilmPanel extends ModelElement {
         `,
     ];
 
-    private readonly follow = (): void => this.requestUpdate();
-
     constructor() {
         super();
         this.framesPerSecond = 25;
     }
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.film.addEventListener('change', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.film.removeEventListener('change', this.follow);
-        super.disconnectedCallback();
+    protected override sources(): EventTarget[] {
+        return [this.film];
     }
     private get film(): Film {
         return this.model.film;

@@ -2,7 +2,8 @@ import { css, html, type TemplateResult } from 'lit';
 
 import type { Key } from '../texts/message.ts';
 import { ModelElement } from './model_element.ts';
-import { controlStyles } from './shared_styles.ts';
+import { panelHead } from './panel_head.ts';
+import { controlStyles, factStyles, headStyles } from './shared_styles.ts';
 
 type Topic = Extract<Key, `help.${string}.what`> extends `help.${infer T}.what` ? T : never;
 const topics: Topic[] = ['turn', 'move', 'zoom', 'fly', 'views', 'back', 'walk', 'ask', 'measure', 'escape', 'tools', 'files'];
@@ -11,30 +12,21 @@ const topics: Topic[] = ['turn', 'move', 'zoom', 'fly', 'views', 'back', 'walk',
 export class HelpPanel extends ModelElement {
     static override styles = [
         controlStyles,
+        headStyles,
+        factStyles,
         css`
-            header {
-                display: flex;
-                justify-content: space-between;
-                align-items: center;
-                gap: 0.8rem;
-            }
-            h2 {
-                margin: 0;
-            }
             dl {
-                display: grid;
-                grid-template-columns: auto 1fr;
                 gap: 0.35rem 1.2rem;
-                margin: 0.8rem 0 0;
+                margin-top: 0.8rem;
                 font-size: 0.9rem;
             }
             dt {
                 font-weight: 600;
+                color: inherit;
             }
             dd {
-                margin: 0;
                 color: var(--muted);
-                overflow-wrap: anywhere;
+                text-align: start;
             }
         `,
     ];
@@ -44,10 +36,8 @@ export class HelpPanel extends ModelElement {
     }
 
     override render(): TemplateResult {
-        return html`<header>
-                <h2>${this.text('help')}</h2>
-                <button aria-label=${this.text('help.close')} @click=${() => this.dispatchEvent(new Event('close'))}>✕</button>
-            </header>
+        const close = (): void => void this.dispatchEvent(new Event('close'));
+        return html`${panelHead(this.text('help'), this.text('help.close'), close)}
             <dl>
                 ${topics.map(
                     (topic) =>

@@ -3,6 +3,7 @@ import { css, html, nothing, svg, type TemplateResult } from 'lit';
 import { roundInSpan, type Range } from '../looks/ranges.ts';
 import type { Histogram, HistogramRequest, Vector } from '../wasm/values.ts';
 import { Counted } from './counted.ts';
+import { followPointer } from './follow_pointer.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
@@ -211,16 +212,8 @@ export class HistogramElement extends ModelElement {
         const [low, high] = this.domain; // stays while one drags
         const move = ({ clientX }: PointerEvent): void =>
             this.move(which, low + ((clientX - field.left) / field.width) * (high - low), [low, high]);
-        const drop = (): void => {
-            handle.removeEventListener('pointermove', move);
-            handle.removeEventListener('pointerup', drop);
-            handle.removeEventListener('pointercancel', drop);
-        };
         handle.focus();
-        handle.setPointerCapture(event.pointerId);
-        handle.addEventListener('pointermove', move);
-        handle.addEventListener('pointerup', drop);
-        handle.addEventListener('pointercancel', drop);
+        followPointer(event, move);
     }
 
     private key(event: KeyboardEvent, which: 0 | 1): void {

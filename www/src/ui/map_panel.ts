@@ -9,7 +9,8 @@ import type { BaseLayer, MapShape } from '../map/shapes.ts';
 import { kindOf } from '../measuring/measurement.ts';
 import type { CloudState, Vector } from '../wasm/values.ts';
 import { ModelElement } from './model_element.ts';
-import { controlStyles } from './shared_styles.ts';
+import { panelHead } from './panel_head.ts';
+import { controlStyles, headStyles } from './shared_styles.ts';
 
 const baseLayerKey = 'stipple.baseLayer';
 
@@ -30,17 +31,8 @@ export class MapPanel extends ModelElement {
 
     static override styles = [
         controlStyles,
+        headStyles,
         css`
-            header {
-                display: flex;
-                justify-content: space-between;
-                align-items: center;
-                gap: 0.4rem;
-            }
-            h2 {
-                margin: 0;
-                flex: 1;
-            }
             .map {
                 position: relative;
                 height: 240px;
@@ -61,16 +53,6 @@ export class MapPanel extends ModelElement {
                 gap: 0.3rem;
                 margin-top: 0.5rem;
             }
-            form input {
-                width: 100%;
-                font: inherit;
-                font-size: 0.82rem;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.25rem 0.4rem;
-            }
         `,
     ];
 
@@ -80,7 +62,6 @@ export class MapPanel extends ModelElement {
     private footprints: MapShape[] = [];
     private fitted = '';
     private isDue = false;
-    private readonly follow = (): void => this.renewSoon();
 
     constructor() {
         super();
@@ -92,16 +73,17 @@ export class MapPanel extends ModelElement {
     override connectedCallback(): void {
         super.connectedCallback();
         this.base = this.model.baseLayer ?? storedBaseLayer();
-        this.model.addEventListener('frame', this.follow);
-        this.model.measuring.addEventListener('change', this.follow);
+        this.model.addEventListener('frame', this.renewSoon);
     }
     override disconnectedCallback(): void {
-        this.model.removeEventListener('frame', this.follow);
-        this.model.measuring.removeEventListener('change', this.follow);
+        this.model.removeEventListener('frame', this.renewSoon);
         this.map?.dispose();
         this.map = undefined;
         this.frame = '';
         super.disconnectedCallback();
+    }
+    protected override sources(): EventTarget[] {
+        return [this.model.measuring];
     }
     override updated(changed: PropertyValues): void {
         super.updated(changed);
@@ -109,13 +91,10 @@ export class MapPanel extends ModelElement {
     }
 
     override render(): TemplateResult {
-        return html`<header>
-                <h2>${this.text('map')}</h2>
-                <button class="quiet" @click=${() => (this.isEditing = !this.isEditing)} aria-expanded=${this.isEditing}>
-                    ${this.text('map.base')}
-                </button>
-                <button class="quiet" aria-label=${this.text('map.close')} @click=${() => this.model.showMap(false)}>✕</button>
-            </header>
+        const base = html`<button aria-expanded=${this.isEditing} @click=${() => (this.isEditing = !this.isEditing)}>
+            ${this.text('map.base')}
+        </button>`;
+        return html`${panelHead(this.text('map'), this.text('map.close'), () => this.model.showMap(false), base)}
             ${this.isEditing ? this.renderBase() : ''}
             <div class="map" tabindex="0" role="application" aria-label=${this.text('map.label')}></div>
             ${this.base?.attribution ? html`<p class="note">${this.base.attribution}</p>` : ''}
@@ -148,14 +127,14 @@ export class MapPanel extends ModelElement {
 
     // The map follows at most once a frame.
 
-    private renewSoon(): void {
+    private readonly renewSoon = (): void => {
         if (this.isDue) return;
         this.isDue = true;
         requestAnimationFrame(() => {
             this.isDue = false;
             void this.renew();
         });
-    }
+    };
 
     private async renew(): Promise<void> {
         const { model } = this, clouds = model.clouds.filter(({ bounds, visible }) => visible && bounds);

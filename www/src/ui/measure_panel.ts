@@ -8,13 +8,14 @@ import { displayUnits } from '../measuring/units.ts';
 import { select } from './fields.ts';
 import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
-import { controlStyles } from './shared_styles.ts';
+import { controlStyles, factStyles } from './shared_styles.ts';
 import { followToolbarKeys, keepToolbarStop, stopOf } from './toolbar.ts';
 
 /** The measuring tools, and what was measured. */
 export class MeasurePanel extends ModelElement {
     static override styles = [
         controlStyles,
+        factStyles,
         css`
             .tools {
                 display: grid;
@@ -55,14 +56,12 @@ export class MeasurePanel extends ModelElement {
                 align-items: center;
             }
             .head input {
-                font: inherit;
+                font-size: inherit;
                 font-weight: 600;
-                color: inherit;
                 background: none;
                 border: 0;
                 border-radius: 4px;
                 padding: 0.1rem 0.2rem;
-                min-width: 0;
             }
             .head button {
                 background: none;
@@ -73,20 +72,8 @@ export class MeasurePanel extends ModelElement {
                 font-size: 0.8rem;
             }
             dl {
-                display: grid;
-                grid-template-columns: auto 1fr;
                 gap: 0.1rem 0.8rem;
-                margin: 0.2rem 0 0;
-                font-size: 0.82rem;
-                user-select: text;
-            }
-            dt {
-                color: var(--muted);
-            }
-            dd {
-                margin: 0;
-                text-align: end;
-                font-variant-numeric: tabular-nums;
+                margin-top: 0.2rem;
             }
             dd small {
                 color: var(--muted);
@@ -102,15 +89,6 @@ export class MeasurePanel extends ModelElement {
                 gap: 0.4rem;
                 margin-top: 0.3rem;
             }
-            .height input {
-                min-width: 0;
-                font: inherit;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.2rem 0.3rem;
-            }
             .error {
                 margin: 0.3rem 0 0;
                 font-size: 0.82rem;
@@ -125,15 +103,8 @@ export class MeasurePanel extends ModelElement {
         `,
     ];
 
-    private readonly follow = (): void => this.requestUpdate();
-
-    override connectedCallback(): void {
-        super.connectedCallback();
-        this.measuring.addEventListener('change', this.follow);
-    }
-    override disconnectedCallback(): void {
-        this.measuring.removeEventListener('change', this.follow);
-        super.disconnectedCallback();
+    protected override sources(): EventTarget[] {
+        return [this.measuring];
     }
 
     private get measuring(): Measuring {

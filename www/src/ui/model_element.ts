@@ -4,19 +4,23 @@ import type { Model } from '../model.ts';
 import type { Key, Values } from '../texts/message.ts';
 import type { Texts } from '../texts/texts.ts';
 
-/** An element that shows the model, and shows it again when it changed. */
+/** An element that shows the model, and shows it again when it, or one of its `sources`, changed. */
 export class ModelElement extends LitElement {
     static override properties = { model: { attribute: false } };
     declare model: Model;
 
-    private readonly refresh = (): void => this.requestUpdate();
+    protected readonly follow = (): void => this.requestUpdate();
+    /** What it shows beside the model itself: each tells of its changes by 'change'. */
+    protected sources(): EventTarget[] {
+        return [];
+    }
 
     override connectedCallback(): void {
         super.connectedCallback();
-        this.model.addEventListener('change', this.refresh);
+        for (const source of [this.model, ...this.sources()]) source.addEventListener('change', this.follow);
     }
     override disconnectedCallback(): void {
-        this.model.removeEventListener('change', this.refresh);
+        for (const source of [this.model, ...this.sources()]) source.removeEventListener('change', this.follow);
         super.disconnectedCallback();
     }
 

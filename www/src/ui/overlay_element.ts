@@ -1,5 +1,6 @@
 import { css, type CSSResult } from 'lit';
 
+import { followPointer } from './follow_pointer.ts';
 import { ModelElement } from './model_element.ts';
 
 /** Something that lies over the picture, under the panels, and follows the camera. Clicks go through it, but where it says otherwise. */
@@ -23,20 +24,12 @@ export abstract class OverlayElement extends ModelElement {
         }
     `;
 
-    protected readonly follow = (): void => this.requestUpdate();
-    /** What it shows beside the picture's frames: each tells of its changes by 'change'. */
-    protected sources(): EventTarget[] {
-        return [];
-    }
-
     override connectedCallback(): void {
         super.connectedCallback();
         this.model.addEventListener('frame', this.follow);
-        for (const source of this.sources()) source.addEventListener('change', this.follow);
     }
     override disconnectedCallback(): void {
         this.model.removeEventListener('frame', this.follow);
-        for (const source of this.sources()) source.removeEventListener('change', this.follow);
         super.disconnectedCallback();
     }
 
@@ -44,15 +37,6 @@ export abstract class OverlayElement extends ModelElement {
     protected followPointer(event: PointerEvent, follow: (moved: PointerEvent) => void): void {
         event.preventDefault();
         event.stopPropagation();
-        const handle = event.currentTarget as Element;
-        const drop = (): void => {
-            handle.removeEventListener('pointermove', follow as EventListener);
-            handle.removeEventListener('pointerup', drop);
-            handle.removeEventListener('pointercancel', drop);
-        };
-        handle.setPointerCapture(event.pointerId);
-        handle.addEventListener('pointermove', follow as EventListener);
-        handle.addEventListener('pointerup', drop);
-        handle.addEventListener('pointercancel', drop);
+        followPointer(event, follow);
     }
 }

@@ -1,43 +1,14 @@
-import { css, html, type TemplateResult } from 'lit';
+import { html, type TemplateResult } from 'lit';
 
 import type { LonLat } from '../map/projection.ts';
 import type { PickedPoint } from '../wasm/values.ts';
 import { ModelElement } from './model_element.ts';
-import { controlStyles } from './shared_styles.ts';
+import { panelHead } from './panel_head.ts';
+import { controlStyles, factStyles, headStyles } from './shared_styles.ts';
 
 /** The point that was clicked: coordinates and every attribute, as the file has them. */
 export class PointPanel extends ModelElement {
-    static override styles = [
-        controlStyles,
-        css`
-            header {
-                display: flex;
-                justify-content: space-between;
-                align-items: center;
-                gap: 0.8rem;
-            }
-            h2 {
-                margin: 0;
-            }
-            dl {
-                display: grid;
-                grid-template-columns: auto 1fr;
-                gap: 0.15rem 1.2rem;
-                margin: 0.6rem 0 0;
-                font-size: 0.82rem;
-                user-select: text;
-            }
-            dt {
-                color: var(--muted);
-            }
-            dd {
-                margin: 0;
-                text-align: end;
-                font-variant-numeric: tabular-nums;
-                overflow-wrap: anywhere;
-            }
-        `,
-    ];
+    static override styles = [controlStyles, headStyles, factStyles];
 
     /** Of the point that is shown; null: it has none that is known. */
     private lonLat: LonLat | null = null;
@@ -61,10 +32,7 @@ export class PointPanel extends ModelElement {
         const picked = this.model.picking.point;
         if (!picked) return '';
         const [x, y, z] = picked.position;
-        return html`<header>
-                <h2>${this.text('point')}</h2>
-                <button class="quiet" aria-label=${this.text('point.close')} @click=${() => this.model.picking.forget()}>✕</button>
-            </header>
+        return html`${panelHead(this.text('point'), this.text('point.close'), () => this.model.picking.forget())}
             <dl>
                 ${this.row('X', 'X', x)} ${this.row('Y', 'Y', y)} ${this.row('Z', 'Z', z)}
                 ${this.lonLat

@@ -43,14 +43,7 @@ export class ProblemList extends ModelElement {
                 flex: 1 1 12rem;
             }
             input {
-                font: inherit;
-                color: inherit;
-                width: 100%;
                 min-height: 2rem;
-                padding: 0 0.6rem;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 6px;
             }
         `,
     ];

@@ -4,6 +4,7 @@ import type { Profile } from '../profile/profile.ts';
 import { draw, fitted, margin, nearest, panned, type ProfileView, ticks, toPixels, toProfile, zoomed } from '../profile/profile_view.ts';
 import type { RegionFormat } from '../wasm/values.ts';
 import { download } from './download.ts';
+import { followPointer } from './follow_pointer.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
@@ -43,12 +44,6 @@ export class ProfilePanel extends ModelElement {
             }
             .bar input {
                 width: 4.5rem;
-                font: inherit;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.15rem 0.3rem;
             }
             .bar a {
                 color: var(--accent);
@@ -105,12 +100,7 @@ export class ProfilePanel extends ModelElement {
 
     private shown: ProfileView | undefined;
     private fittedLength = -1;
-    private readonly follow = (): void => {
-        this.hovered = this.marked = -1;
-        this.requestUpdate();
-    };
-
-    private readonly followFiles = (): void => this.requestUpdate();
+    private readonly letGo = (): void => void (this.hovered = this.marked = -1);
 
     constructor() {
         super();
@@ -119,13 +109,14 @@ export class ProfilePanel extends ModelElement {
     }
     override connectedCallback(): void {
         super.connectedCallback();
-        this.profile.addEventListener('change', this.follow);
-        this.model.regionFiles.addEventListener('change', this.followFiles);
+        this.profile.addEventListener('change', this.letGo);
     }
     override disconnectedCallback(): void {
-        this.profile.removeEventListener('change', this.follow);
-        this.model.regionFiles.removeEventListener('change', this.followFiles);
+        this.profile.removeEventListener('change', this.letGo);
         super.disconnectedCallback();
+    }
+    protected override sources(): EventTarget[] {
+        return [this.profile, this.model.regionFiles];
     }
 
     private get profile(): Profile {
@@ -313,10 +304,8 @@ export class ProfilePanel extends ModelElement {
         this.hovered = nearest(this.profile.points, this.shown, x, y);
     };
     private readonly press = (event: PointerEvent): void => {
-        const { area } = this;
-        if (!area || event.button !== 0) return;
+        if (event.button !== 0) return;
         let last = this.placeOf(event), way = 0;
-        area.setPointerCapture(event.pointerId);
         const move = (moved: PointerEvent): void => {
             const at = this.placeOf(moved);
             way += Math.hypot(at.x - last.x, at.y - last.y);
@@ -324,15 +313,9 @@ export class ProfilePanel extends ModelElement {
             last = at;
             this.requestUpdate();
         };
-        const lift = (): void => {
-            area.removeEventListener('pointermove', move);
-            area.removeEventListener('pointerup', lift);
-            area.removeEventListener('pointercancel', lift);
+        followPointer(event, move, () => {
             if (way <= 3 && this.shown) this.marked = nearest(this.profile.points, this.shown, last.x, last.y);
-        };
-        area.addEventListener('pointermove', move);
-        area.addEventListener('pointerup', lift);
-        area.addEventListener('pointercancel', lift);
+        });
     };
 
     /** What is seen, with its axes: points as a picture in it. */

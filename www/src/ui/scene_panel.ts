@@ -32,28 +32,9 @@ export class ScenePanel extends ModelElement {
                 align-items: center;
                 gap: 0.3rem;
             }
-            .size input {
-                width: 100%;
-                min-width: 0;
-                font: inherit;
-                font-size: 0.85rem;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 5px;
-                padding: 0.25rem 0.4rem;
-            }
             .link {
                 direction: ltr;
-                width: 100%;
                 margin-top: 0.5rem;
-                font: inherit;
-                font-size: 0.82rem;
-                color: inherit;
-                background: var(--raised);
-                border: 1px solid var(--line);
-                border-radius: 6px;
-                padding: 0.3rem 0.5rem;
             }
         `,
     ];

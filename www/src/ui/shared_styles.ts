@@ -84,9 +84,26 @@ export const controlStyles = css`
     select:hover {
         background: var(--raised-hover);
     }
+    .quiet {
+        background: none;
+        border-color: transparent;
+        color: var(--muted);
+        padding: 0 0.5rem;
+    }
     select {
         width: 100%;
         padding: 0 0.4rem;
+    }
+    :where(input:not([type='range'], [type='checkbox'], [type='radio'], [type='file']), textarea) {
+        width: 100%;
+        min-width: 0;
+        font: inherit;
+        font-size: 0.85rem;
+        color: inherit;
+        background: var(--raised);
+        border: 1px solid var(--line);
+        border-radius: 6px;
+        padding: 0.25rem 0.4rem;
     }
     input[type='range'] {
         width: 100%;
@@ -160,5 +177,40 @@ export const controlStyles = css`
         .choice span {
             padding: 0.55rem 0.3rem;
         }
+    }
+`;
+
+/** A panel's head: its title, and what closes it. */
+export const headStyles = css`
+    header {
+        display: flex;
+        justify-content: space-between;
+        align-items: center;
+        gap: 0.4rem;
+    }
+    header h2 {
+        margin: 0;
+        flex: 1;
+    }
+`;
+
+/** Names and values, as lists of them are written. */
+export const factStyles = css`
+    dl {
+        display: grid;
+        grid-template-columns: auto 1fr;
+        gap: 0.15rem 1.2rem;
+        margin: 0.6rem 0 0;
+        font-size: 0.82rem;
+        user-select: text;
+    }
+    dt {
+        color: var(--muted);
+    }
+    dd {
+        margin: 0;
+        text-align: end;
+        font-variant-numeric: tabular-nums;
+        overflow-wrap: anywhere;
     }
 `;
