@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/environment.sh
 
-for needed in build/release/client/headless/stipple www/dist/index.html; do
+for needed in build/release/client/headless/stipple build/release/tests/e2e/native_answers www/dist/index.html; do
   [ -e "$needed" ] || { echo "scripts/test_e2e.sh: $needed is missing; build first" >&2; exit 3; }
 done
 stamp=tests/e2e/node_modules/.complete

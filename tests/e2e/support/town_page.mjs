@@ -2,10 +2,10 @@
 import { launch, openPage, settle, settleWithPoints } from './browser.mjs';
 import { makeTown, scratchFolder, serve } from './program.mjs';
 
-/** {page, complaints, folder (of the clouds), address, browser, close()}. */
-export async function openTownPage(size) {
+/** `town`: of makeTown(). {page, complaints, folder (of the clouds), address, browser, close()}. */
+export async function openTownPage(size, town = {}) {
     const folder = await scratchFolder();
-    const server = await serve(await makeTown(folder.path));
+    const server = await serve(await makeTown(folder.path, town));
     const browser = await launch();
     const close = async () => {
         await browser.close();

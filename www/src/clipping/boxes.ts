@@ -22,16 +22,23 @@ export function headingOf(box: ClipBox): number | undefined {
 }
 
 export function withHeading(box: ClipBox, degrees: number): ClipBox {
-    const radians = (degrees * Math.PI) / 180, c = Math.cos(radians), s = Math.sin(radians);
+    const [c, s] = directionOf(degrees);
     const { rotation: _, ...rest } = box;
     return {
         ...rest,
         axes: [
             [c, s, 0],
-            [-s, c, 0],
+            [s === 0 ? 0 : -s, c, 0],
             [0, 0, 1],
         ],
     };
+}
+
+/** Cosine and sine; of right angles exactly, as the server's boxes are turned (shared/geometry/oriented_box.hpp). */
+function directionOf(degrees: number): [number, number] {
+    const quarters = (((degrees / 90) % 4) + 4) % 4, radians = (degrees * Math.PI) / 180;
+    const exactly: [number, number][] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
+    return exactly[quarters] ?? [Math.cos(radians), Math.sin(radians)];
 }
 
 /** The side along `axis` at its end `sign` (1 or -1) goes outwards by `way`; the opposite side stays. */
