@@ -1,9 +1,9 @@
 #include "client/core/load_queue.hpp"
 
+#include "client/core/load_merging.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <set>
 
 namespace stipple {
@@ -40,67 +40,6 @@ int mostAttempts(ErrorCode code) {
 // Of a source, whatever it is asked for: who asks again gets the same answer, until somebody does something.
 bool isRefusal(ErrorCode code) {
     return code == ErrorCode::accessDenied || code == ErrorCode::unsupported;
-}
-
-ByteRange unionOf(ByteRange a, ByteRange b) {
-    std::uint64_t offset = std::min(a.offset, b.offset);
-    return {offset, std::max(a.end(), b.end()) - offset};
-}
-
-// Larger gaps may take up half of a request.
-constexpr std::uint64_t smallGapBytes = 4096;
-
-// Takes `first` and then its neighbours in the file, alternately after and before, as far as limits allow.
-// `order`: indices of items by cloud and offset; `place`: where an item is in it. Marks what it takes. A gap
-// with bytes that are here, or on their way, is not read over.
-std::vector<std::size_t> mergeAround(std::size_t first, const std::vector<LoadItem>& items,
-                                     const std::vector<std::size_t>& order,
-                                     const std::vector<std::size_t>& place, std::vector<bool>& taken,
-                                     const LoadLimits& limits, std::uint64_t mostGapBytes,
-                                     const std::function<bool(ByteRange)>& isHere, ByteRange& range) {
-    std::vector<std::size_t> members{first};
-    taken[first] = true;
-    range = items[first].range;
-    std::uint64_t useful = range.size;
-    auto tryMember = [&](std::size_t at) {
-        std::size_t index = order[at];
-        const LoadItem& item = items[index];
-        if (taken[index] || item.key.cloud != items[first].key.cloud || item.mayEndEarly)
-            return false;
-        bool isRegion = item.key.kind == LoadKind::region; // what the picture waits for travels without it
-        if (isRegion != (items[first].key.kind == LoadKind::region))
-            return false;
-        if (!limits.mergesNodes && item.key.id != items[first].key.id)
-            return false;
-        ByteRange gap{range.end(), 0};
-        if (item.range.offset > range.end())
-            gap.size = item.range.offset - range.end();
-        else if (range.offset > item.range.end())
-            gap = {item.range.end(), range.offset - item.range.end()};
-        ByteRange merged = unionOf(range, item.range);
-        if (gap.size > mostGapBytes || merged.size > limits.mergedRequestBytes)
-            return false;
-        if (gap.size > smallGapBytes && merged.size > 2 * (useful + item.range.size))
-            return false;
-        if (gap.size > 0 && isHere(gap))
-            return false;
-        useful += item.range.size;
-        taken[index] = true;
-        members.push_back(index);
-        range = merged;
-        return true;
-    };
-    if (items[first].mayEndEarly)
-        return members;
-    std::size_t after = place[first] + 1, before = place[first];
-    for (bool more = true; more;) {
-        more = false;
-        if (after < order.size() && tryMember(after))
-            more = true, ++after;
-        if (before > 0 && tryMember(before - 1))
-            more = true, --before;
-    }
-    return members;
 }
 
 } // namespace
@@ -230,43 +169,31 @@ void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::
     int mostRequests = std::max(1, limits.requests);
     if (waiting_.empty() || requestsInFlight_ >= mostRequests)
         return;
-    std::vector<std::size_t> order(waiting_.size()), place(waiting_.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-        order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        const LoadItem &x = waiting_[a], &y = waiting_[b];
-        return std::tie(x.key.cloud, x.range.offset, x.key) < std::tie(y.key.cloud, y.range.offset, y.key);
+    LoadMerger merger(waiting_, limits, [&](std::uint32_t cloud, ByteRange gap) {
+        return sources_.at(cloud).received.overlaps(gap) || isComing(cloud, gap);
     });
-    for (std::size_t i = 0; i < order.size(); ++i)
-        place[order[i]] = i;
-
-    std::vector<bool> taken(waiting_.size()), sent(waiting_.size());
-    for (std::size_t i = 0; i < taken.size(); ++i)
-        taken[i] = notBefore(waiting_[i]) > now || isComing(waiting_[i].key.cloud, waiting_[i].range);
+    for (std::size_t i = 0; i < waiting_.size(); ++i)
+        if (notBefore(waiting_[i]) > now || isComing(waiting_[i].key.cloud, waiting_[i].range))
+            merger.take(i);
+    std::vector<bool> sent(waiting_.size());
     std::vector<std::vector<LoadItem>> sending;
     std::uint64_t bytes = bytesInFlight_ + bytesHeld;
     int requests = requestsInFlight_;
     for (std::size_t i = 0; i < waiting_.size() && requests < mostRequests; ++i) {
-        if (taken[i])
+        if (merger.isTaken(i))
             continue;
-        ByteRange range;
-        std::uint32_t cloud = waiting_[i].key.cloud;
-        auto isHere = [&](ByteRange gap) {
-            return sources_.at(cloud).received.overlaps(gap) || isComing(cloud, gap);
-        };
-        std::uint64_t mostGap = sources_.at(cloud).bytes->readsOverGaps() ? limits.mergeGapBytes : 0;
-        std::vector<std::size_t> members =
-            mergeAround(i, waiting_, order, place, taken, limits, mostGap, isHere, range);
+        bool readsOver = sources_.at(waiting_[i].key.cloud).bytes->readsOverGaps();
+        LoadMerger::Together together = merger.takeAround(i, readsOver ? limits.mergeGapBytes : 0);
         // One request is always allowed, however large its range.
-        if (bytes > 0 && (bytes >= limits.bytes || range.size > limits.bytes - bytes))
+        if (bytes > 0 && (bytes >= limits.bytes || together.range.size > limits.bytes - bytes))
             break;
-        bytes += range.size;
+        bytes += together.range.size;
         ++requests;
-        for (std::size_t member : members)
-            sent[member] = true;
         auto& items = sending.emplace_back();
-        for (std::size_t member : members)
+        for (std::size_t member : together.items) {
+            sent[member] = true;
             items.push_back(std::move(waiting_[member]));
+        }
     }
     std::size_t kept = 0;
     for (std::size_t i = 0; i < waiting_.size(); ++i)
