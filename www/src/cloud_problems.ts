@@ -1,28 +1,8 @@
 import type { Model } from './model.ts';
+import type { ProblemKind, ShownProblem } from './shown_problem.ts';
 import type { CloudError, CloudState } from './wasm/values.ts';
 import type { Requests } from './wasm/requests.ts';
 import type { Viewer } from './wasm/viewer.ts';
-
-/**
- * `stopped`: nothing more comes until somebody does something. `retrying`: it is tried again by itself. `incomplete`: a
- * part of the cloud is given up, the rest is shown.
- */
-export type ProblemKind = 'stopped' | 'retrying' | 'incomplete';
-
-/** What is wrong with an open cloud, and what can be done. */
-export interface CloudProblem {
-    cloud: number;
-    name: string;
-    kind: ProblemKind;
-    /** What happened. */
-    sentence: string;
-    /** What to do about it; may be empty. */
-    advice: string;
-    /** A token may help. */
-    wantsToken: boolean;
-    /** One was given, and did not. */
-    tokenWasRefused: boolean;
-}
 
 /** The problems of the open clouds, as their states tell of them, and the ways out. The camera and all that is here stay. */
 export class CloudProblems {
@@ -42,33 +22,16 @@ export class CloudProblems {
         removeEventListener('online', this.networkIsBack);
     }
 
-    list(): CloudProblem[] {
-        return this.model.clouds
-            .flatMap((cloud) => this.problemOf(cloud) ?? [])
-            .filter((problem) => !this.hidden.has(keyOf(problem)));
-    }
-
-    /** Of what does not mend by itself. */
-    sentences(): string[] {
-        return this.list().flatMap(({ kind, sentence }) => (kind === 'retrying' ? [] : [sentence]));
+    list(): ShownProblem[] {
+        return this.model.clouds.flatMap((cloud) => {
+            const problem = this.problemOf(cloud);
+            return problem && !this.hidden.has(keyOf(cloud, problem)) ? [problem] : [];
+        });
     }
 
     /** Of all clouds: 0. */
     retry(cloud: number): void {
         this.model.act(() => this.viewer.retry(cloud));
-    }
-
-    /** Sends the token to the cloud's server, from now on until the page is closed. */
-    giveToken(cloud: number, token: string): void {
-        const address = this.model.addressOf(cloud);
-        if (address === undefined) return;
-        this.requests.setToken(address, token.trim());
-        this.retry(cloud);
-    }
-
-    hide(problem: CloudProblem): void {
-        this.hidden.add(keyOf(problem));
-        this.model.changed();
     }
 
     /** Tells of clouds whose file was replaced; once for each time. */
@@ -80,7 +43,7 @@ export class CloudProblems {
         }
     }
 
-    private problemOf(cloud: CloudState): CloudProblem | undefined {
+    private problemOf(cloud: CloudState): ShownProblem | undefined {
         const { texts } = this.model;
         const stopped = cloud.error ?? cloud.interrupted;
         if (stopped) return this.problem(cloud, 'stopped', stopped);
@@ -103,18 +66,25 @@ export class CloudProblems {
         return undefined;
     }
 
-    private problem(cloud: CloudState, kind: ProblemKind, error: CloudError, advice = sentence(error.advice)): CloudProblem {
-        const address = this.model.addressOf(cloud.id);
+    private problem(cloud: CloudState, kind: ProblemKind, error: CloudError, advice = sentence(error.advice)): ShownProblem {
+        const { id, name } = cloud, address = this.model.addressOf(id);
         const isRefused = error.code === 'accessDenied' && address !== undefined;
-        return {
-            cloud: cloud.id,
-            name: cloud.name,
+        const problem: ShownProblem = {
+            name,
             kind,
             sentence: sentence(error.where ? `${error.where}: ${error.what}` : error.what),
             advice,
-            wantsToken: isRefused,
             tokenWasRefused: isRefused && this.requests.hasToken(address),
+            ...(isRefused && { giveToken: (token: string) => this.model.access.giveToken(address, token) }),
+            retry: () => this.retry(id),
+            ...(kind === 'incomplete' ? { hide: () => this.hide(cloud, problem) } : { close: () => this.model.close(id) }),
         };
+        return problem;
+    }
+
+    private hide(cloud: CloudState, problem: ShownProblem): void {
+        this.hidden.add(keyOf(cloud, problem));
+        this.model.changed();
     }
 
     private readonly networkIsBack = (): void => {
@@ -123,8 +93,8 @@ export class CloudProblems {
     };
 }
 
-function keyOf({ cloud, kind, sentence }: CloudProblem): string {
-    return [cloud, kind, sentence].join();
+function keyOf({ id }: CloudState, { kind, sentence }: ShownProblem): string {
+    return [id, kind, sentence].join();
 }
 function sentence(text: string): string {
     return text === '' ? '' : `${text[0]!.toUpperCase()}${text.slice(1)}.`;

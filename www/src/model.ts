@@ -1,4 +1,6 @@
+import { Access } from './access.ts';
 import { Annotations } from './annotations/annotations.ts';
+import { CloudListing } from './cloud_listing.ts';
 import { CloudProblems } from './cloud_problems.ts';
 import { Clipping } from './clipping/clipping.ts';
 import { Frames } from './drawing/frames.ts';
@@ -15,7 +17,7 @@ import { type NavigationMode, Navigator } from './navigation/navigator.ts';
 import { Profile } from './profile/profile.ts';
 import { RegionFiles } from './regions/region_files.ts';
 import { Scenes } from './scene/scenes.ts';
-import { listClouds, type CloudPage, type ListedCloud } from './server_clouds.ts';
+import type { ShownProblem } from './shown_problem.ts';
 import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
 import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
@@ -28,10 +30,6 @@ import { type StyleChange, Viewer } from './wasm/viewer.ts';
  * `context` (the graphics context was lost, or is there again).
  */
 export class Model extends EventTarget {
-    listed: ListedCloud[] = [];
-    /** Where the server's list goes on. */
-    nextOfList: string | undefined;
-    listError = '';
     clouds: CloudState[] = [];
     style!: Style;
     limits!: Limits;
@@ -47,6 +45,10 @@ export class Model extends EventTarget {
     readonly picking: Picking;
     /** What is wrong with clouds. */
     readonly problems: CloudProblems;
+    /** What servers refused else, and the tokens for them. */
+    readonly access = new Access(this);
+    /** What the server offers. */
+    readonly listing = new CloudListing(this);
     readonly camera: CameraMoves;
     /** How pointer and keys move the camera. */
     readonly navigator = new Navigator(this);
@@ -86,7 +88,7 @@ export class Model extends EventTarget {
         texts: Texts,
         /** Whose clouds are listed, and who cuts profiles. */
         readonly server: URL | undefined,
-        /** How clouds are asked for; whoever embeds the page sets its `prepare`. */
+        /** How all is asked for; whoever embeds the page sets its `prepare`. */
         readonly requests: Requests,
     ) {
         super();
@@ -126,25 +128,6 @@ export class Model extends EventTarget {
     }
 
     // Clouds
-
-    /** What the server has; a plain file host has no list, which is no error. */
-    async takeList(list: Promise<CloudPage>): Promise<void> {
-        try {
-            const { clouds, next } = await list;
-            this.listed = [...this.listed, ...clouds];
-            this.nextOfList = next;
-        } catch (error) {
-            this.listError = this.texts.sentenceOf(error);
-        }
-        this.changed();
-    }
-
-    /** The next page of the server's list. */
-    async listMore(): Promise<void> {
-        const next = this.nextOfList;
-        this.nextOfList = undefined;
-        if (next !== undefined && this.server) await this.takeList(listClouds(this.server, next));
-    }
 
     isOpen(address: string): boolean {
         return this.addresses.has(address);
@@ -258,6 +241,10 @@ export class Model extends EventTarget {
         }
     }
 
+    /** All that is wrong now. */
+    shownProblems(): ShownProblem[] {
+        return [...this.problems.list(), ...this.access.problems()];
+    }
     notify(sentence: string): void {
         if (this.notices.at(-1) !== sentence) this.notices = [...this.notices.slice(-3), sentence];
         this.changed();

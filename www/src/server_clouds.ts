@@ -1,4 +1,5 @@
 import { Problem } from './texts/message.ts';
+import type { Requests } from './wasm/requests.ts';
 
 /** A cloud that the server offers, as GET api/v1/clouds lists it. */
 export interface ListedCloud {
@@ -17,8 +18,8 @@ export interface CloudPage {
 }
 
 /** What a server has; nothing where it is a plain file host. `next` of the page before. */
-export async function listClouds(server: URL, next = 'api/v1/clouds'): Promise<CloudPage> {
-    const response = await fetch(new URL(next, server), { cache: 'no-store' });
+export async function listClouds(server: URL, requests: Requests, next = 'api/v1/clouds'): Promise<CloudPage> {
+    const response = await requests.fetch(new URL(next, server).href, { cache: 'no-store' });
     if (response.status === 404) return { clouds: [] };
     if (!response.ok) throw new Problem('clouds.listFailed', { status: String(response.status) });
     if (!response.headers.get('content-type')?.includes('json')) return { clouds: [] };

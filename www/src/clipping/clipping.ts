@@ -46,7 +46,7 @@ export class Clipping {
     apisOfClouds(): { name: string; api: string }[] {
         const { server } = this.model;
         if (!server) return [];
-        return this.model.listed
+        return this.model.listing.clouds
             .filter((cloud) => this.model.isOpen(cloud.address))
             .map(({ id, name }) => ({
                 name,
@@ -56,7 +56,7 @@ export class Clipping {
 
     /** Those whose points the page has to read itself: of static hosts, and files. */
     cloudsWithoutApi(): CloudState[] {
-        const served = this.model.listed.map(({ address }) => address);
+        const served = this.model.listing.clouds.map(({ address }) => address);
         return this.model.clouds.filter(
             ({ id, stage }) => stage === 'ready' && !served.includes(this.model.addressOf(id) ?? ''),
         );

@@ -13,7 +13,7 @@ export function tellWhatHappens(model: Model, viewer: TellingElement): void {
         const text = JSON.stringify(model.clouds);
         if (text !== clouds) viewer.tell('cloud-change', { clouds: model.clouds });
         clouds = text;
-        const told = [...model.notices, ...model.problems.sentences()];
+        const told = [...model.notices, ...model.shownProblems().flatMap(({ kind, sentence }) => (kind === 'retrying' ? [] : [sentence]))];
         const fresh = told.filter((notice) => !notices.includes(notice));
         notices = told;
         for (const sentence of fresh) viewer.tell('problem', { sentence });

@@ -64,7 +64,7 @@ export class Life {
         try {
             const server = this.viewer.getAttribute('server');
             const base = server === null ? undefined : new URL(server, document.baseURI);
-            const list = base && listClouds(base); // travels while the program loads
+            const list = base && listClouds(base, this.requests); // travels while the program loads
             list?.catch(() => {}); // told by the model
             texts = await loadTexts(this.languages());
             if (this.hasEnded) return;
@@ -84,7 +84,7 @@ export class Life {
 
     private begin(model: Model, list: Promise<CloudPage> | undefined): void {
         this.model = model;
-        if (list) this.listed = model.takeList(list);
+        if (list) this.listed = model.listing.take(list);
         const app = (this.app = new App());
         followInput(model.canvas, model);
         followDrops(this.viewer, model, (isOver) => (app.isDropTarget = isOver), this.ending.signal);

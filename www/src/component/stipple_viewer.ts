@@ -58,8 +58,8 @@ export class StippleViewer extends TellingElement {
     }
 
     /**
-     * Called before each request for bytes of a cloud; may be set before there is a document. Requests carry what it
-     * makes of them: another address, for example a signed one, headers, credentials.
+     * Called before each request, for a cloud's bytes, a list, a profile or a file; may be set before there is a document. Requests carry
+     * what it makes of them: another address, for example a signed one, headers, credentials.
      */
     get prepareRequest(): PrepareRequest | undefined {
         return this.requests.prepare;
@@ -97,7 +97,7 @@ export class StippleViewer extends TellingElement {
         await this.whenReady();
         const { model, life } = this.get();
         await life.listed;
-        return model.listed;
+        return model.listing.clouds;
     }
 
     // Camera and looks

@@ -1,4 +1,5 @@
 import type { Model } from '../model.ts';
+import { reasonOf } from '../problem_document.ts';
 import { Problem } from '../texts/message.ts';
 import type { RegionOf, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
@@ -94,8 +95,10 @@ export class Profile extends EventTarget {
                 if (abort.signal.aborted) return;
             }
             this.isComplete = isWhole;
+            this.model.access.granted('profile');
         } catch (error) {
             if (abort.signal.aborted) return;
+            this.model.access.takes(error, 'profile', () => void this.load());
             this.error = this.model.texts.sentenceOf(error);
         }
         this.isLoading = false;
@@ -107,8 +110,8 @@ export class Profile extends EventTarget {
         const points = new ProfilePoints();
         for (const { name, href } of this.addresses('csv', spacing === undefined ? {} : { spacing: String(spacing) })) {
             const wanted = this.attributesOf(name);
-            const response = await fetch(`${href}&attributes=${encodeURIComponent(wanted)}`, { signal });
-            if (!response.ok) throw await problemOf(response);
+            const response = await this.model.requests.fetch(`${href}&attributes=${encodeURIComponent(wanted)}`, { signal });
+            if (!response.ok) throw await refusalOf(response);
             await readProfile(response.body!, points);
         }
         if (signal.aborted) return false;
@@ -150,12 +153,8 @@ export class Profile extends EventTarget {
     }
 }
 
-/** What a problem document (RFC 9457) says. */
-async function problemOf(response: Response): Promise<Error> {
-    try {
-        const problem = (await response.json()) as { detail?: string; title?: string };
-        return new Problem('profile.refused', { reason: problem.detail ?? problem.title ?? '' });
-    } catch {
-        return new Problem('profile.refusedStatus', { status: String(response.status) });
-    }
+async function refusalOf(response: Response): Promise<Error> {
+    const reason = await reasonOf(response);
+    if (reason === undefined) return new Problem('profile.refusedStatus', { status: String(response.status) });
+    return new Problem('profile.refused', { reason });
 }

@@ -4,6 +4,7 @@ import { headingOf, pointsAddress, regionOf, withCentre, withHeading, withSize }
 import type { ClipBox, RegionFormat, Vector } from '../wasm/values.ts';
 import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
+import { servedLink } from './served_link.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const modes: ClipBox['mode'][] = ['hideOutside', 'hideInside', 'highlight'];
@@ -183,7 +184,7 @@ export class ClipPanel extends ModelElement {
     private renderFiles(cloud: string, api: string, box: ClipBox): TemplateResult | string {
         const links = formats.flatMap((format) => {
             const address = pointsAddress(api, box, format);
-            return address === undefined ? [] : html`<a href=${address} download>${format.toUpperCase()}</a>`;
+            return address === undefined ? [] : servedLink(this.model, address, format, cloud);
         });
         return links.length > 0 ? html`<p class="files">${this.text('clip.inside', { cloud })} ${links}</p>` : '';
     }

@@ -86,8 +86,8 @@ export class CloudList extends ModelElement {
     ];
 
     override render(): TemplateResult {
-        const { clouds, listed } = this.model;
-        const offers = listed.filter((cloud) => !this.model.isOpen(cloud.address));
+        const { clouds, listing } = this.model;
+        const offers = listing.clouds.filter((cloud) => !this.model.isOpen(cloud.address));
         return html`<h2>${this.text('clouds')}</h2>
             <ul>
                 ${clouds.map((cloud) => this.renderCloud(cloud))}
@@ -102,11 +102,9 @@ export class CloudList extends ModelElement {
                         </button>`,
                 )}
             </ul>
-            ${this.model.nextOfList === undefined
-                ? ''
-                : html`<button class="open" @click=${() => this.model.listMore()}>${this.text('clouds.more')}</button>`}
+            ${listing.goesOn ? html`<button class="open" @click=${() => listing.more()}>${this.text('clouds.more')}</button>` : ''}
             ${clouds.length + offers.length === 0
-                ? html`<p>${this.model.listError || this.text('clouds.none')}</p>`
+                ? html`<p>${listing.error || this.text('clouds.none')}</p>`
                 : ''}
             <input type="file" id="file" accept=".stipple" multiple @change=${this.pick} />
             <button class="open" @click=${() => this.renderRoot.querySelector<HTMLInputElement>('#file')!.click()}>

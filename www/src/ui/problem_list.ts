@@ -1,10 +1,10 @@
 import { css, html, nothing, type TemplateResult } from 'lit';
 
-import type { CloudProblem } from '../cloud_problems.ts';
+import type { ShownProblem } from '../shown_problem.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
-/** What is wrong with clouds, each with what happened, what to do, and the buttons for it. */
+/** What is wrong with clouds and servers, each with what happened, what to do, and the buttons for it. */
 export class ProblemList extends ModelElement {
     static override styles = [
         controlStyles,
@@ -49,12 +49,11 @@ export class ProblemList extends ModelElement {
     ];
 
     override render(): TemplateResult[] {
-        return this.model.problems.list().map((problem) => this.renderProblem(problem));
+        return this.model.shownProblems().map((problem) => this.renderProblem(problem));
     }
 
-    private renderProblem(problem: CloudProblem): TemplateResult {
-        const { cloud, name, kind, sentence, advice } = problem;
-        const { problems } = this.model;
+    private renderProblem(problem: ShownProblem): TemplateResult {
+        const { name, kind, sentence, advice } = problem;
         return html`<section
             class="problem ${kind}"
             data-problem=${kind}
@@ -64,29 +63,29 @@ export class ProblemList extends ModelElement {
             <strong>${name}</strong>
             <p>${sentence}</p>
             ${advice ? html`<p class="advice" aria-live=${kind === 'retrying' ? 'off' : nothing}>${advice}</p>` : ''}
-            ${problem.wantsToken ? this.renderToken(problem) : ''}
+            ${problem.giveToken ? this.renderToken(problem) : ''}
             <div class="ways">
                 ${kind === 'retrying'
                     ? ''
-                    : html`<button aria-label=${this.text('problem.retryNamed', { name })} @click=${() => problems.retry(cloud)}>
+                    : html`<button aria-label=${this.text('problem.retryNamed', { name })} @click=${() => problem.retry()}>
                           ${this.text('problem.retry')}
                       </button>`}
-                ${kind === 'incomplete'
-                    ? html`<button aria-label=${this.text('problem.hideNamed', { name })} @click=${() => problems.hide(problem)}>
+                ${problem.hide
+                    ? html`<button aria-label=${this.text('problem.hideNamed', { name })} @click=${() => problem.hide!()}>
                           ${this.text('page.hide')}
                       </button>`
-                    : html`<button aria-label=${this.text('problem.closeNamed', { name })} @click=${() => this.model.close(cloud)}>
+                    : html`<button aria-label=${this.text('problem.closeNamed', { name })} @click=${() => problem.close!()}>
                           ${this.text('problem.close')}
                       </button>`}
             </div>
         </section>`;
     }
 
-    private renderToken({ cloud, name, tokenWasRefused }: CloudProblem): TemplateResult {
+    private renderToken({ name, tokenWasRefused, giveToken }: ShownProblem): TemplateResult {
         const give = (event: Event): void => {
             event.preventDefault();
             const field = (event.target as HTMLFormElement).elements.namedItem('token') as HTMLInputElement;
-            if (field.value.trim() !== '') this.model.problems.giveToken(cloud, field.value);
+            if (field.value.trim() !== '') giveToken!(field.value);
             field.value = '';
         };
         return html`${tokenWasRefused ? html`<p>${this.text('problem.tokenRefused')}</p>` : ''}

@@ -6,6 +6,7 @@ import type { RegionFormat } from '../wasm/values.ts';
 import { download } from './download.ts';
 import { followPointer } from './follow_pointer.ts';
 import { ModelElement } from './model_element.ts';
+import { servedLink } from './served_link.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const formats = ['laz', 'las', 'csv'];
@@ -163,9 +164,8 @@ export class ProfilePanel extends ModelElement {
                 ${formats.flatMap((format) =>
                     profile
                         .addresses(format)
-                        .map(
-                            ({ name, href }) =>
-                                html`<a href=${href} download title=${this.text('profile.allPoints', { name })}>${format.toUpperCase()}</a>`,
+                        .map(({ name, href }) =>
+                            servedLink(this.model, href, format, `${name}-profile`, this.text('profile.allPoints', { name })),
                         ),
                 )}
                 ${this.model.clipping.cloudsWithoutApi().map(({ id, name }) => this.renderOwnFiles(id, name))}

@@ -1,4 +1,6 @@
-/** What a page makes of a request for bytes of a cloud; what it leaves out stays as it is. */
+import { Problem } from '../texts/message.ts';
+
+/** What a page makes of a request; what it leaves out stays as it is. */
 export interface PreparedRequest {
     /** Another address, for example with a signature. Messages and saved scenes keep the cloud's own. */
     url?: string;
@@ -8,16 +10,27 @@ export interface PreparedRequest {
 }
 
 /**
- * Called before each request for bytes `range` ("bytes=0-65535") of the cloud at `url`. May take its time: the request
- * waits, and counts as under way. If it throws, the cloud says why, and is tried again like after a network failure.
+ * Called before each request: for bytes `range` ("bytes=0-65535") of the cloud at `url`, or, without a range, for a server's list of clouds, a
+ * profile or a file that it makes. May take its time: the request waits, and counts as under way. If it throws, the page says why; a cloud is
+ * tried again like after a network failure.
  */
 export type PrepareRequest = (
     url: string,
-    range: string,
+    range?: string,
 ) => PreparedRequest | undefined | Promise<PreparedRequest | undefined>;
 
+/** A server wants other credentials (401, 403). */
+export class Refused extends Problem<'access.refused'> {
+    constructor(
+        readonly url: string,
+        readonly status: number,
+    ) {
+        super('access.refused', { status: String(status) });
+    }
+}
+
 /**
- * How requests for clouds are sent: as the embedding page prepares them, with the token that a person gave for the
+ * How requests are sent: as the embedding page prepares them, with the token that a person gave for the
  * origin. Tokens are kept in memory only, and go to their own origin only.
  */
 export class Requests {
@@ -36,17 +49,30 @@ export class Requests {
         return this.tokens.has(new URL(url, document.baseURI).origin);
     }
 
-    async prepared(url: string, range: string): Promise<{ url: string; init: RequestInit }> {
+    /** Whether requests there carry something that a link does not. */
+    addTo(url: string): boolean {
+        return this.prepare !== undefined || this.hasToken(url);
+    }
+
+    /** Sends one for anything but bytes of a cloud. Throws `Refused`. */
+    async fetch(url: string, init: RequestInit = {}): Promise<Response> {
+        const prepared = await this.prepared(url);
+        const response = await fetch(prepared.url, { ...init, ...prepared.init });
+        if (response.status === 401 || response.status === 403) throw new Refused(url, response.status);
+        return response;
+    }
+
+    async prepared(url: string, range?: string): Promise<{ url: string; init: RequestInit }> {
         const made = (await this.prepare?.(url, range)) ?? {};
         const address = new URL(made.url ?? url, document.baseURI);
         const token = this.tokens.get(address.origin);
         const headers = {
             ...(token !== undefined && { Authorization: `Bearer ${token}` }),
             ...made.headers,
-            Range: range,
+            ...(range !== undefined && { Range: range }),
         };
         // Browsers' caches serialise ranges of one address and have mixed them up; the viewer has its own.
-        const init: RequestInit = { cache: 'no-store', headers };
+        const init: RequestInit = range === undefined ? { headers } : { cache: 'no-store', headers };
         if (made.credentials !== undefined) init.credentials = made.credentials;
         return { url: address.href, init };
     }
