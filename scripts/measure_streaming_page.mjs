@@ -7,8 +7,9 @@
 //   node scripts/measure_streaming_page.mjs tasks FILE.stipple
 //       the same with a trace: the main thread's longest task while it streams, and which frames over 50 ms are its
 //       doing: those whose tasks take 50 ms beside the calls of WebGL, in which it waits for the (software) GPU
-//   node scripts/measure_streaming_page.mjs fly [--minutes 20] [--clouds 50]
-//       random flight over small towns, with budgets that go up and down: memory by the minute
+//   node scripts/measure_streaming_page.mjs fly [--minutes 20] [--clouds 50] [--cache 16]
+//       random flight over small towns, with budgets that go up and down, and so many MiB for decoded nodes, for
+//       compressed ones and for the GPU: memory by the minute
 //   node scripts/measure_streaming_page.mjs reopen FILE.stipple [--times 200]
 //       opens and closes the cloud, waiting for its picture: memory every tenth time
 import { mkdtemp, rm } from 'node:fs/promises';
@@ -26,6 +27,7 @@ const { values: options, positionals } = parseArgs({
         minutes: { type: 'string', default: '20' },
         clouds: { type: 'string', default: '50' },
         times: { type: 'string', default: '200' },
+        cache: { type: 'string', default: '16' },
     },
 });
 const [kind, file] = positionals;
@@ -208,6 +210,8 @@ async function measureFlight(browser) {
             next = answer.next;
         }
         await page.waitForFunction(() => window.stipple);
+        const bytes = Number(options.cache) * (1 << 20);
+        await page.evaluate((limits) => window.stipple.setLimits(limits), { cacheBytes: bytes, compressedBytes: bytes, gpuBytes: bytes });
         await page.evaluate((addresses) => addresses.forEach((at) => window.stipple.open(at)), list.map(({ address }) => address));
         await settleWithPoints(page);
         await page.evaluate(() => {

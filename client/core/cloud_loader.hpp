@@ -28,6 +28,8 @@ struct CloudLoader {
     std::unique_ptr<NodeSource> format;
     FetchedRanges fetched; // while opening, and the first request afterwards: the root's bytes are in it
     std::optional<ByteRange> openingNeeds;
+    bool isToOpen = true;       // by the present view (openings.hpp)
+    bool opensAnywhere = false; // whatever the view
     OpenedCloud opened;
     Hierarchy hierarchy;
     std::vector<NodeResidency> residency;                  // parallel to hierarchy's nodes
@@ -40,7 +42,9 @@ struct CloudLoader {
     std::optional<std::chrono::steady_clock::time_point> reloadedAt; // its file was replaced
 
     bool ready() const { return state.stage == CloudStage::ready; }
-    bool opening() const { return state.stage == CloudStage::opening; }
+    bool opening() const { return state.stage == CloudStage::opening && isToOpen; }
+    // World box of its points, as far as it is known; empty: not at all.
+    BoxD place() const { return ready() ? opened.metadata->worldBounds() : state.expected; }
 
     // Opens as far as the fetched bytes allow; the state afterwards says how far.
     void advanceOpening();

@@ -8,6 +8,7 @@ namespace stipple {
 
 // Of one frame.
 struct FrameCounters {
+    std::uint64_t cloudsWaiting = 0;       // skipped: not opened, being hidden or out of view
     std::uint64_t nodesKnown = 0;          // in the loaded part of the hierarchy, all clouds
     std::uint64_t nodesVisited = 0;        // taken from the queue of the selection
     std::uint64_t nodesOutsideFrustum = 0; // skipped, with everything below them

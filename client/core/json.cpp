@@ -47,7 +47,8 @@ constexpr Names<DelayedExpansion, 3> expansions{{
     {"on", DelayedExpansion::on},
     {"auto", DelayedExpansion::automatic},
 }};
-constexpr Names<CloudStage, 3> stages{{
+constexpr Names<CloudStage, 4> stages{{
+    {"waiting", CloudStage::waiting},
     {"opening", CloudStage::opening},
     {"ready", CloudStage::ready},
     {"failed", CloudStage::failed},
@@ -248,7 +249,8 @@ json toJson(const SessionLimits& limits) {
 }
 
 json toJson(const FrameCounters& c) {
-    return {{"nodesKnown", c.nodesKnown},
+    return {{"cloudsWaiting", c.cloudsWaiting},
+            {"nodesKnown", c.nodesKnown},
             {"nodesVisited", c.nodesVisited},
             {"nodesOutsideFrustum", c.nodesOutsideFrustum},
             {"nodesClipped", c.nodesClipped},
@@ -342,6 +344,8 @@ json toJson(const CloudState& cloud) {
         value["reloads"] = cloud.reloads;
     if (!cloud.caution.empty())
         value["caution"] = cloud.caution;
+    if (!cloud.metadata && !cloud.expected.empty())
+        value["bounds"] = toJson(cloud.expected);
     if (cloud.metadata) {
         json attributes = json::array();
         for (const Attribute& attribute : cloud.metadata->schema.attributes)

@@ -1,6 +1,7 @@
 #include "client/core/load_list.hpp"
 
 #include "client/core/load_value.hpp"
+#include "client/core/openings.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -34,9 +35,14 @@ class LoadList {
     std::vector<LoadItem> take() { return std::move(items_); }
 
     void addOpenings() {
+        std::vector<std::pair<double, LoadItem>> openings;
         for (auto& [id, cloud] : loading_.clouds())
             if (auto item = cloud.openingItem())
-                items_.push_back(std::move(*item));
+                openings.emplace_back(openingPixels(cloud, view_), std::move(*item));
+        std::stable_sort(openings.begin(), openings.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        for (auto& [pixels, item] : openings)
+            items_.push_back(std::move(item));
     }
     void addQuestions() {
         for (auto& [id, cloud] : loading_.clouds())

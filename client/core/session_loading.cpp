@@ -1,6 +1,7 @@
 #include "client/core/session_loading.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <thread>
 
 namespace stipple {
@@ -34,7 +35,8 @@ SessionLoading::~SessionLoading() {
         queue_.removeSource(id);
 }
 
-CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::string& name) {
+CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::string& name,
+                            const BoxD& expected) {
     CloudId id = ++lastCloud_;
     CloudLoader& cloud = clouds_[id];
     cloud.state.id = id;
@@ -42,6 +44,8 @@ CloudId SessionLoading::add(std::unique_ptr<ByteSource> source, const std::strin
     cloud.source = std::move(source);
     cloud.format = makeStippleNodeSource();
     cloud.kept = &kept_;
+    cloud.state.expected = std::isfinite(length(expected.max - expected.min)) ? expected : BoxD();
+    cloud.isToOpen = cloud.state.expected.empty();
     queue_.addSource(id, *cloud.source);
     cloud.advanceOpening();
     return id;
@@ -63,6 +67,8 @@ void SessionLoading::retry(std::optional<CloudId> only) {
 
 CloudState SessionLoading::stateOf(const CloudLoader& cloud) const {
     CloudState state = cloud.state;
+    if (state.stage == CloudStage::opening && !cloud.opening())
+        state.stage = CloudStage::waiting;
     if (auto failure = queue_.passingFailure(state.id)) {
         state.retrying = cloud.placed(*failure);
         auto next = queue_.nextRetry(state.id);

@@ -28,7 +28,7 @@ class SessionLoading {
     SessionLoading(NodeDecoder& decoder, SessionCounters& counters, const ViewSession::Now& now);
     ~SessionLoading();
 
-    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
+    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name, const BoxD& expected);
     bool remove(CloudId id);                 // false if there is none
     void retry(std::optional<CloudId> only); // ViewSession::retry()
     // With what is counted and measured at the time.

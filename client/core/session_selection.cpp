@@ -58,8 +58,8 @@ void selectNodes(SessionView& view, CloudMap& clouds, const SessionLimits& limit
 BoxD shownBounds(const CloudMap& clouds) {
     BoxD box;
     for (const auto& [id, cloud] : clouds)
-        if (isShown(cloud))
-            box.extend(cloud.opened.metadata->worldBounds());
+        if (cloud.state.visible && cloud.state.stage != CloudStage::failed && !cloud.place().empty())
+            box.extend(cloud.place());
     return box;
 }
 

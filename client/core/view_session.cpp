@@ -4,6 +4,7 @@
 #include "client/core/counted_view.hpp"
 #include "client/core/frame_time_controller.hpp"
 #include "client/core/load_list.hpp"
+#include "client/core/openings.hpp"
 #include "client/core/plan_maker.hpp"
 #include "client/core/session_loading.hpp"
 #include "client/core/session_selection.hpp"
@@ -23,9 +24,18 @@ class Session final : public ViewSession {
     Session(NodeDecoder& decoder, const SessionLimits& limits, const Now& now)
         : limits_(limits), now_(now), loading_(decoder, counters_, now), painter_(counters_) {}
 
-    CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) override {
+    CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name,
+                     const BoxD& expected) override {
         dirty_ = true;
-        return loading_.add(std::move(source), name);
+        return loading_.add(std::move(source), name, expected);
+    }
+
+    void open(CloudId id) override {
+        auto at = loading_.clouds().find(id);
+        if (at == loading_.clouds().end())
+            return;
+        at->second.opensAnywhere = true;
+        dirty_ = true;
     }
 
     void removeCloud(CloudId id) override {
@@ -202,8 +212,10 @@ class Session final : public ViewSession {
             unusedSince_ = now_();
         updateWatched(loading_.clouds(), watched_);
         view_.transform = viewTransform(view_.camera, view_.width, view_.height, contentBounds());
+        std::uint64_t cloudsWaiting = chooseOpenings(loading_.clouds(), view_);
         selectNodes(view_, loading_.clouds(), limits_, limits_.frameMilliseconds > 0 ? pace_.factor() : 1);
         view_.selection.counters.complete &= !loading_.anyOpening();
+        view_.selection.counters.cloudsWaiting = cloudsWaiting;
         keepSelected();
         want();
     }

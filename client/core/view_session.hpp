@@ -51,7 +51,8 @@ inline constexpr std::size_t maxRecentErrors = 32;
 
 using CloudId = std::uint32_t;
 
-enum class CloudStage { opening, ready, failed };
+// waiting: nothing was asked for yet, since it is hidden or the place where it is said to be is out of view.
+enum class CloudStage { waiting, opening, ready, failed };
 
 struct CloudState {
     CloudId id = 0;
@@ -59,6 +60,7 @@ struct CloudState {
     CloudStage stage = CloudStage::opening;
     Error error;                                   // failed: why
     std::shared_ptr<const CloudMetadata> metadata; // ready
+    BoxD expected; // where it was said to be, in world coordinates; empty: nobody said
     // Ready, but its source fails: why nothing more is asked of it until ViewSession::retry().
     std::optional<Error> interrupted;
     // What failed a moment ago and is tried again by itself: why, and the seconds until the next attempt.
@@ -83,11 +85,18 @@ class ViewSession {
                                                const Now& now = &std::chrono::steady_clock::now);
     virtual ~ViewSession() = default;
 
-    virtual CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name) = 0;
+    // Opened as soon as it is visible. With `expected`, the world box that its points are said to lie in (a
+    // list of clouds may know it): as soon as that box is in the view, larger than a pixel, the largest
+    // first. A scene of hundreds of clouds asks for those alone that it shows. An empty box, or one that is
+    // not finite, says nothing.
+    virtual CloudId addCloud(std::unique_ptr<ByteSource> source, const std::string& name,
+                             const BoxD& expected = {}) = 0;
+    virtual void open(CloudId id) = 0;        // a cloud that waits, wherever it is
     virtual void removeCloud(CloudId id) = 0; // cancels its requests, frees its nodes
     virtual void setVisible(CloudId id, bool visible) = 0;
     virtual std::vector<CloudState> clouds() const = 0;
-    // World box of the visible, ready clouds; empty if there are none.
+    // World box of the visible clouds, as far as it is known: of those that are not open yet, what they were
+    // said to fill. Empty if there are none.
     virtual BoxD contentBounds() const = 0;
 
     virtual void setViewport(int width, int height) = 0; // pixels, > 0; 1280 × 720 at first

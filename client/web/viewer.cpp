@@ -46,14 +46,14 @@ Result<std::unique_ptr<Viewer>> Viewer::create() {
     return viewer;
 }
 
-CloudId Viewer::add(std::unique_ptr<ByteSource> source, const std::string& name) {
+CloudId Viewer::add(std::unique_ptr<ByteSource> source, const std::string& name, const BoxD& expected) {
     if (session_->clouds().empty() && !cameraWasSet_)
         pendingView_ = NamedView::iso;
-    return session_->addCloud(std::move(source), name);
+    return session_->addCloud(std::move(source), name, expected);
 }
 
-CloudId Viewer::addUrl(const std::string& url, const std::string& name) {
-    return add(makeFetchSource(url), name);
+CloudId Viewer::addUrl(const std::string& url, const std::string& name, const BoxD& expected) {
+    return add(makeFetchSource(url), name, expected);
 }
 
 CloudId Viewer::addFile(std::uint32_t file, const std::string& name, std::uint64_t sizeBytes) {
@@ -167,8 +167,8 @@ double Viewer::flyToPoint(Vec3d point, double part) {
 double Viewer::flyToCloud(CloudId id) {
     BoxD content = session_->contentBounds();
     for (const CloudState& cloud : session_->clouds())
-        if (cloud.id == id && cloud.metadata)
-            content = cloud.metadata->worldBounds();
+        if (cloud.id == id && (cloud.metadata || !cloud.expected.empty()))
+            content = cloud.metadata ? cloud.metadata->worldBounds() : cloud.expected;
     return content.empty() ? 0 : begin(fittedCamera(session_->camera(), content, aspect()));
 }
 
@@ -228,6 +228,13 @@ void Viewer::load() {
     session_->load();
 }
 
+// What was skipped may have changed where the picture has not.
+void Viewer::keepCounters() {
+    FrameCounters before = std::exchange(drawn_.counters, session_->plan().counters);
+    drawn_.counters.passesRun = before.passesRun;
+    drawn_.counters.passesSkipped = before.passesSkipped;
+}
+
 bool Viewer::frame() {
     if (!renderer_)
         return false;
@@ -238,8 +245,10 @@ bool Viewer::frame() {
         applyPendingView();
         isNew = session_->update() || isNew;
     }
-    if (!isNew && !drawAgain_)
+    if (!isNew && !drawAgain_) {
+        keepCounters();
         return false;
+    }
     drawAgain_ = false;
     drawn_ = session_->plan();
     if (drawn_.counters.nodesDelayed > 0)

@@ -23,7 +23,9 @@ class Viewer {
     // Needs the canvas of host.hpp. unsupported: no WebGL2, or a shader that does not compile.
     static Result<std::unique_ptr<Viewer>> create();
 
-    CloudId addUrl(const std::string& url, const std::string& name);
+    // `expected`: see ViewSession::addCloud().
+    CloudId addUrl(const std::string& url, const std::string& name, const BoxD& expected);
+    void openNow(CloudId id) { session_->open(id); }
     CloudId addFile(std::uint32_t file, const std::string& name, std::uint64_t sizeBytes);
     void removeCloud(CloudId id);
     void setVisible(CloudId id, bool visible);
@@ -142,9 +144,10 @@ class Viewer {
     nlohmann::json pickedJson(const PickHit& hit, const PointRecord& record) const;
     static std::string jsonOf(const Style& style);
     double aspect() const { return static_cast<double>(width_) / height_; }
-    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name);
+    CloudId add(std::unique_ptr<ByteSource> source, const std::string& name, const BoxD& expected = {});
     bool pendingViewIsDue() const { return pendingView_ && !session_->contentBounds().empty(); }
     void applyPendingView();
+    void keepCounters();
     double begin(const Camera& destination);
 
     std::unique_ptr<WorkerDecoder> decoder_; // outlives the session

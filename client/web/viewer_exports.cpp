@@ -39,8 +39,14 @@ EMSCRIPTEN_KEEPALIVE void stipple_dispose() {
 }
 
 // Clouds.
-EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_url(const char* url, const char* name) {
-    return viewer->addUrl(url, name);
+// In the world box from (x, y, z) to (toX, toY, toZ), as far as is known; an empty or infinite one: it is
+// not.
+EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_url(const char* url, const char* name, double x, double y,
+                                                   double z, double toX, double toY, double toZ) {
+    return viewer->addUrl(url, name, {{x, y, z}, {toX, toY, toZ}});
+}
+EMSCRIPTEN_KEEPALIVE void stipple_open_now(std::uint32_t id) {
+    viewer->openNow(id);
 }
 EMSCRIPTEN_KEEPALIVE std::uint32_t stipple_add_file(std::uint32_t file, const char* name, double sizeBytes) {
     return viewer->addFile(file, name, static_cast<std::uint64_t>(sizeBytes));

@@ -28,6 +28,13 @@ export class CloudListing {
         if (next !== undefined && server) await this.add(listClouds(server, requests, next), this.clouds);
     }
 
+    /** All of them: those in view are opened, the others when they come into view. */
+    async openAll(): Promise<void> {
+        while (this.goesOn && !this.model.isDisposed) await this.more();
+        if (this.model.isDisposed) return;
+        for (const { address, name, bounds } of this.clouds) this.model.openAddress(address, name, bounds);
+    }
+
     private async add(page: Promise<CloudPage>, before: ListedCloud[]): Promise<void> {
         const { access, texts } = this.model;
         this.error = '';

@@ -35,11 +35,13 @@ async function openLinkedScene(viewer: StippleViewer): Promise<boolean> {
     }
 }
 
-/** Those that the address names (`?cloud=URL`, several times if need be), else the server's first. */
+/** Those that the address names (`?cloud=URL`, several times if need be; `?cloud=*`: all of the server's), else the server's first. */
 async function openClouds(viewer: StippleViewer): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('cloud');
-    named.filter(Boolean).forEach((address) => viewer.addCloud(address)); // `?cloud=` names none
+    const addresses = named.filter((address) => address && address !== '*'); // `?cloud=` names none
+    addresses.forEach((address) => viewer.addCloud(address));
     const [first] = await viewer.serverClouds();
+    if (named.includes('*')) await StippleViewer.modelOf(viewer).listing.openAll();
     if (named.length === 0 && first) viewer.addCloud(first.address, first.name);
 }
 

@@ -20,7 +20,7 @@ import { Scenes } from './scene/scenes.ts';
 import type { ShownProblem } from './shown_problem.ts';
 import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
-import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
+import type { Bounds, CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
 import { Requests } from './wasm/requests.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
@@ -137,14 +137,20 @@ export class Model extends EventTarget {
         return [...this.addresses].find(([, opened]) => opened === id)?.[0];
     }
 
-    /** The cloud's id; that of the open one if it is. */
-    openAddress(address: string, name = address): number {
+    /** The cloud's id; that of the open one if it is. With `bounds` nothing is asked for before they are in view. */
+    openAddress(address: string, name = address, bounds?: Bounds | null): number {
         const opened = this.addresses.get(address);
         if (opened !== undefined) return opened;
-        const id = this.viewer.addUrl(new URL(address, document.baseURI).href, name);
+        const id = this.viewer.addUrl(new URL(address, document.baseURI).href, name, bounds);
         this.addresses.set(address, id);
         this.frames.loadSoon();
         return id;
+    }
+
+    /** A cloud that waits until it is in view. */
+    openNow(id: number): void {
+        this.viewer.openNow(id);
+        this.frames.loadSoon();
     }
 
     openFile(file: File): number {

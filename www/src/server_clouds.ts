@@ -1,3 +1,4 @@
+import type { Bounds } from './wasm/values.ts';
 import { Problem } from './texts/message.ts';
 import type { Requests } from './wasm/requests.ts';
 
@@ -8,6 +9,8 @@ export interface ListedCloud {
     /** Of the file, absolute or relative to the page. */
     address: string;
     pointCount: number;
+    /** World box of its points. */
+    bounds?: Bounds | null;
 }
 
 /** Some of the clouds, and where the list goes on. */

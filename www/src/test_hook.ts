@@ -2,7 +2,7 @@ import type { Annotation } from './annotations/annotation.ts';
 import type { Measurement } from './measuring/measurement.ts';
 import type { Model } from './model.ts';
 import type { PrepareRequest } from './wasm/requests.ts';
-import type { CloudState, Counters, PickedPoint } from './wasm/values.ts';
+import type { Bounds, CloudState, Counters, PickedPoint } from './wasm/values.ts';
 
 /**
  * `window.stipple`: the page for programs. Tests and measurements in a browser use it; so may whoever embeds the
@@ -10,7 +10,7 @@ import type { CloudState, Counters, PickedPoint } from './wasm/values.ts';
  */
 export interface TestHook {
     /** Opens a cloud by its address, absolute or relative to the page. */
-    open(address: string, name?: string): void;
+    open(address: string, name?: string, bounds?: Bounds): void;
     /** Called before each request for bytes of a cloud: headers, credentials, signed addresses. */
     prepareRequest: PrepareRequest | undefined;
     /** Resolves when everything that the picture wants has arrived and is drawn. */
@@ -41,7 +41,7 @@ declare global {
 
 export function installTestHook(model: Model): void {
     window.stipple = {
-        open: (address, name) => void model.openAddress(address, name),
+        open: (address, name, bounds) => void model.openAddress(address, name, bounds),
         get prepareRequest() {
             return model.requests.prepare;
         },

@@ -2,7 +2,7 @@ import type { Measurement } from '../measuring/measurement.ts';
 import type { Model } from '../model.ts';
 import type { Scene } from '../scene/scene.ts';
 import type { ListedCloud } from '../server_clouds.ts';
-import type { Camera, CloudState, Limits, PickedPoint, Style, Vector } from '../wasm/values.ts';
+import type { Bounds, Camera, CloudState, Limits, PickedPoint, Style, Vector } from '../wasm/values.ts';
 import { type PrepareRequest, Requests } from '../wasm/requests.ts';
 import type { StyleChange } from '../wasm/viewer.ts';
 import { type Followed, followed, Life } from './life.ts';
@@ -81,10 +81,13 @@ export class StippleViewer extends TellingElement {
         this.get().model.problems.retry(id);
     }
 
-    /** Opens a cloud by its address or as a file; its id. Whether that works is told by `cloud-change` and `problem`. */
-    addCloud(source: string | File, name?: string): number {
+    /**
+     * Opens a cloud by its address or as a file; its id. Whether that works is told by `cloud-change` and `problem`. Of a
+     * cloud whose `bounds` (world coordinates) are given nothing is asked for before they come into view.
+     */
+    addCloud(source: string | File, name?: string, bounds?: Bounds): number {
         const { model } = this.get();
-        return typeof source === 'string' ? model.openAddress(source, name) : model.openFile(source);
+        return typeof source === 'string' ? model.openAddress(source, name, bounds) : model.openFile(source);
     }
     removeCloud(id: number): void {
         this.get().model.close(id);

@@ -1,7 +1,7 @@
 import type { Annotation } from '../annotations/annotation.ts';
 import { kindsOfMeasurement, kindOf, type VolumeBase } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
-import type { Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
+import type { Bounds, Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import { Problem } from '../texts/message.ts';
 import { mostKeyframes } from '../navigation/film.ts';
 import { FieldReader } from './fields.ts';
@@ -57,10 +57,19 @@ function readCloud(value: unknown, path: string): SceneCloud {
         ...(file && { file }),
         name: fields.text('name', address || file),
         visible: fields.flag('visible', true),
+        ...readBounds(fields.optionalObject('bounds'), `${path}.bounds`),
     };
     if (!address === !file) throw new Problem('scene.cloudAddress', { place: path });
     fields.finish();
     return cloud;
+}
+
+function readBounds(value: unknown, path: string): { bounds?: Bounds } {
+    if (value === undefined) return {};
+    const fields = FieldReader.of(value, path);
+    const bounds = { min: fields.vector('min'), max: fields.vector('max') };
+    fields.finish();
+    return { bounds };
 }
 
 /** Only what a page may fetch. */

@@ -2,7 +2,7 @@ import type { Annotation } from '../annotations/annotation.ts';
 import type { Measurement, VolumeBase } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
-import type { Camera, Keyframe, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
+import type { Bounds, Camera, Keyframe, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
 
 /**
  * What a person has set up, as JSON: clouds, camera, looks, measurements. A reader of a later version reads earlier ones;
@@ -16,6 +16,8 @@ export interface SceneCloud {
     file?: string;
     name: string;
     visible: boolean;
+    /** World box of its points: it is opened when that is in view. */
+    bounds?: Bounds;
 }
 
 export interface SceneMeasurement {

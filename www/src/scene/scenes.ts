@@ -24,9 +24,9 @@ export class Scenes {
         return {
             stipple: 'scene',
             version: sceneVersion,
-            clouds: clouds.map(({ id, name, visible }) => {
+            clouds: clouds.map(({ id, name, visible, bounds }) => {
                 const address = model.addressOf(id);
-                return { ...(address === undefined ? { file: name } : { address }), name, visible };
+                return { ...(address === undefined ? { file: name } : { address }), name, visible, ...(bounds && { bounds }) };
             }),
             camera: viewer.camera(),
             style: differences(viewer.style(), this.defaults.style),
@@ -106,8 +106,8 @@ export class Scenes {
             if (!isWanted) model.close(id);
             else if (address === undefined) kept.set(name, id);
         }
-        return clouds.map(({ address, file, name, visible }) => {
-            const id = address === undefined ? kept.get(file!) : model.openAddress(address, name);
+        return clouds.map(({ address, file, name, visible, bounds }) => {
+            const id = address === undefined ? kept.get(file!) : model.openAddress(address, name, bounds);
             if (id !== undefined) this.viewer.setVisible(id, visible);
             else model.notify(model.texts.text('scene.openByHand', { name: file! }));
             return id ?? 0;

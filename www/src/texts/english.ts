@@ -63,6 +63,8 @@ export const english = {
     'clouds.showAll': 'Show all of it',
     'clouds.close': 'Close {name}',
     'clouds.opening': 'opening…',
+    'clouds.waiting': 'waiting until it is in view',
+    'clouds.openAll': 'Open all of them',
     'clouds.listFailed': "The server's list of clouds can't be had: status {status}.",
     'clouds.replaced': '{name} was replaced on its server. The new version is shown, from where you were.',
     'clouds.note': 'Note: {note}.',

@@ -61,6 +61,8 @@ export const french = translation({
     'clouds.showAll': 'Tout montrer',
     'clouds.close': 'Fermer {name}',
     'clouds.opening': 'ouverture…',
+    'clouds.waiting': 'en attente d’être en vue',
+    'clouds.openAll': 'Tout ouvrir',
     'clouds.listFailed': 'Impossible d’obtenir la liste des nuages du serveur : statut {status}.',
     'clouds.replaced': '{name} a été remplacé sur son serveur. La nouvelle version est affichée, vue du même endroit.',
     'clouds.note': 'Remarque : {note}.',

@@ -61,6 +61,8 @@ export const german = translation({
     'clouds.showAll': 'Ganz zeigen',
     'clouds.close': '{name} schließen',
     'clouds.opening': 'wird geöffnet…',
+    'clouds.waiting': 'wartet, bis sie im Bild ist',
+    'clouds.openAll': 'Alle öffnen',
     'clouds.listFailed': 'Die Liste der Punktwolken ist vom Server nicht zu bekommen: Status {status}.',
     'clouds.replaced': '{name} wurde auf dem Server ersetzt. Die neue Fassung ist zu sehen, von derselben Stelle aus.',
     'clouds.note': 'Hinweis: {note}.',

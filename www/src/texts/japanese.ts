@@ -61,6 +61,8 @@ export const japanese = translation({
     'clouds.showAll': '全体を表示',
     'clouds.close': '{name} を閉じる',
     'clouds.opening': '開いています…',
+    'clouds.waiting': '表示範囲に入るまで待機中',
+    'clouds.openAll': 'すべて開く',
     'clouds.listFailed': 'サーバーの点群一覧を取得できません: ステータス {status}。',
     'clouds.replaced': '{name} はサーバーで置き換えられました。同じ位置から新しい版を表示しています。',
     'clouds.note': '注意: {note}。',

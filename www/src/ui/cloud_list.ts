@@ -103,6 +103,9 @@ export class CloudList extends ModelElement {
                 )}
             </ul>
             ${listing.goesOn ? html`<button class="open" @click=${() => listing.more()}>${this.text('clouds.more')}</button>` : ''}
+            ${offers.length < 2
+                ? ''
+                : html`<button class="open" @click=${() => listing.openAll()}>${this.text('clouds.openAll')}</button>`}
             ${clouds.length + offers.length === 0
                 ? html`<p>${listing.error || this.text('clouds.none')}</p>`
                 : ''}
@@ -139,7 +142,7 @@ export class CloudList extends ModelElement {
     }
 
     private describe(cloud: CloudState): string {
-        if (cloud.stage === 'opening') return this.text('clouds.opening');
+        if (cloud.stage === 'opening' || cloud.stage === 'waiting') return this.text(`clouds.${cloud.stage}`);
         const count = cloud.pointCount ?? 0;
         return `${this.points(count, this.texts.count(count))}${cloud.crs ? ` · ${cloud.crs}` : ''}`;
     }

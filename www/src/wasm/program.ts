@@ -22,7 +22,8 @@ export interface ProgramOptions {
 export interface ViewerProgram extends Program {
     _stipple_create(): Address;
     _stipple_dispose(): void;
-    _stipple_add_url(url: Address, name: Address): number;
+    _stipple_add_url(url: Address, name: Address, ...box: number[]): number;
+    _stipple_open_now(id: number): void;
     _stipple_add_file(file: number, name: Address, sizeBytes: number): number;
     _stipple_remove_cloud(id: number): void;
     _stipple_retry(id: number): void;

@@ -113,10 +113,17 @@ export interface CloudClass {
     points: number;
 }
 
+/** A box in world coordinates. */
+export interface Bounds {
+    min: Vector;
+    max: Vector;
+}
+
 export interface CloudState {
     id: number;
     name: string;
-    stage: 'opening' | 'ready' | 'failed';
+    /** waiting: nothing was asked for yet, since it is hidden or out of view. */
+    stage: 'waiting' | 'opening' | 'ready' | 'failed';
     visible: boolean;
     error?: CloudError;
     /** Nothing more is asked of its server until somebody says so. */
@@ -131,7 +138,8 @@ export interface CloudState {
     /** What may go wrong later. */
     caution?: string;
     pointCount?: number;
-    bounds?: { min: Vector; max: Vector } | null;
+    /** Of its points; of one that is not open yet, as it was said. */
+    bounds?: Bounds | null;
     crs?: string;
     attributes?: string[];
     classes?: CloudClass[];

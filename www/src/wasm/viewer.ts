@@ -7,6 +7,7 @@ import { Host } from './host.ts';
 import type { Address, ProgramOptions, ViewerProgram } from './program.ts';
 import type { Requests } from './requests.ts';
 import type {
+    Bounds,
     Camera,
     CloudFacts,
     CloudState,
@@ -26,6 +27,8 @@ import type {
     Vector,
     ViewCounts,
 } from './values.ts';
+
+const nowhere: Bounds = { min: [1, 1, 1], max: [0, 0, 0] };
 
 type Partially<T> = { [K in keyof T]?: T[K] extends unknown[] ? T[K] : T[K] extends object ? Partial<T[K]> : T[K] };
 export type StyleChange = Partially<Style>;
@@ -57,8 +60,14 @@ export class Viewer {
         this.host.dispose();
     }
 
-    addUrl(url: string, name: string): number {
-        return this.heap.lendTexts([url, name], (a, b) => this.program._stipple_add_url(a!, b!));
+    /** With `bounds` it is opened when they come into view (ViewSession::addCloud). */
+    addUrl(url: string, name: string, bounds?: Bounds | null): number {
+        const { min, max } = bounds ?? nowhere;
+        return this.heap.lendTexts([url, name], (a, b) => this.program._stipple_add_url(a!, b!, ...min, ...max));
+    }
+    /** One that waits. */
+    openNow(id: number): void {
+        this.program._stipple_open_now(id);
     }
     addFile(file: File): number {
         const kept = this.host.keepFile(file);
