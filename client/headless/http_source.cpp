@@ -6,6 +6,7 @@
 #include "shared/base/text.hpp"
 #include "shared/io/file_source.hpp"
 #include "shared/io/range_answer.hpp"
+#include "shared/io/retry_after.hpp"
 
 #include <algorithm>
 #include <boost/asio/as_tuple.hpp>
@@ -21,6 +22,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
+#include <ctime>
 #include <deque>
 #include <limits>
 #include <optional>
@@ -416,7 +418,8 @@ class HttpSource final : public ByteSource {
         answer.contentRange = field(head, http::field::content_range);
         answer.etag = field(head, http::field::etag);
         answer.lastModified = field(head, http::field::last_modified);
-        answer.retryAfter = field(head, http::field::retry_after);
+        answer.retryAfter = retryAfterInSeconds(field(head, http::field::retry_after),
+                                                field(head, http::field::date), std::time(nullptr));
         if (auto length = parser.content_length())
             answer.contentLength = *length;
         return answer;

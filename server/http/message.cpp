@@ -1,7 +1,7 @@
 #include "server/http/message.hpp"
 
-#include "server/http/http_date.hpp"
 #include "shared/base/text.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <algorithm>
 

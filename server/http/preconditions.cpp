@@ -1,7 +1,7 @@
 #include "server/http/preconditions.hpp"
 
 #include "server/http/entity_tag.hpp"
-#include "server/http/http_date.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <algorithm>
 

@@ -2,9 +2,9 @@
 
 #include "server/http/byte_range.hpp"
 #include "server/http/entity_tag.hpp"
-#include "server/http/http_date.hpp"
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
+#include "shared/io/http_date.hpp"
 
 namespace stipple::server {
 

@@ -2,9 +2,9 @@
 
 #include "client/headless/http_source.hpp"
 #include "server/http/entity_tag.hpp"
-#include "server/http/http_date.hpp"
 #include "shared/base/text.hpp"
 #include "shared/format/cloud_file.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <algorithm>
 #include <optional>

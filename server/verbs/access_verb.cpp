@@ -3,12 +3,12 @@
 #include "server/access/id_pattern.hpp"
 #include "server/access/signed_address.hpp"
 #include "server/access/token.hpp"
-#include "server/http/http_date.hpp"
 #include "server/http/target.hpp"
 #include "server/site/cloud_address.hpp"
 #include "server/verbs/duration.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/verb.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -126,7 +126,7 @@ Error accessError(int status, const std::string& where) {
             "ask for the right to read it; the address may be signed and have expired"};
 }
 
-// RFC 9110 §10.2.3, as a number of seconds. A date is taken as if the field weren't there.
+// What is no whole number is taken as if the field weren't there.
 int secondsOf(std::string_view retryAfter) {
     std::uint64_t seconds = 0;
     if (!takeNumber(retryAfter, seconds) || !retryAfter.empty())

@@ -30,7 +30,7 @@ struct RangeAnswer {
     std::string etag;
     std::string lastModified;
     std::optional<std::uint64_t> contentLength; // absent also when the body is content-coded
-    std::string retryAfter = {};
+    std::string retryAfter = {};                // in seconds (shared/io/retry_after.hpp)
 };
 
 // The version of a file that a source reads. A default one pins nothing yet.

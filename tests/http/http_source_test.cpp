@@ -209,6 +209,14 @@ TEST_CASE("who may not read, and who is to come again later, is told so") {
     CHECK(result.error().retryAfterSeconds == 7);
 }
 
+TEST_CASE("a date in Retry-After is a pause, counted from the answer's own date") {
+    FixedServer busy("HTTP/1.1 503 Service Unavailable\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\n"
+                     "Retry-After: Sun, 06 Nov 1994 08:50:07 GMT\r\nContent-Length: 0\r\n\r\n");
+    auto result = readNow(*open(busy.url()), {0, 10});
+    REQUIRE_FALSE(result.ok());
+    CHECK(result.error().retryAfterSeconds == 30);
+}
+
 TEST_CASE("a read tells how far its answer has come") {
     FixedServer stuck(
         "HTTP/1.1 206 Partial Content\r\nContent-Range: bytes 0-9/10\r\nContent-Length: 10\r\n\r\n0123",

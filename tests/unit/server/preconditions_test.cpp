@@ -1,9 +1,10 @@
 #include "server/http/preconditions.hpp"
 
-#include "server/http/http_date.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <catch2/catch.hpp>
 
+using namespace stipple;
 using namespace stipple::server;
 
 namespace {

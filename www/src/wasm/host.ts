@@ -217,9 +217,17 @@ function fieldsOf(response: Response): Fields {
         contentRange: field('content-range'),
         etag: field('etag'),
         lastModified: field('last-modified'),
-        retryAfter: field('retry-after'),
+        retryAfter: inSeconds(field('retry-after'), field('date')),
         contentLength: isCoded || field('content-length') === '' ? -1 : Number(field('content-length')),
     };
+}
+
+/** A Retry-After: of a date, the seconds after the answer's own, or after now where that is not shown (shared/io/retry_after.hpp). */
+function inSeconds(retryAfter: string, date: string): string {
+    const timeOf = (text: string): number => Date.parse(/ GMT$/.test(text) ? text : `${text} GMT`);
+    const until = /^[A-Z][a-z]+,? /.test(retryAfter) ? timeOf(retryAfter) : NaN, from = timeOf(date);
+    if (Number.isNaN(until)) return retryAfter;
+    return String(Math.max(0, Math.ceil((until - (Number.isNaN(from) ? Date.now() : from)) / 1000)));
 }
 
 /** Of "bytes=0-65535". */

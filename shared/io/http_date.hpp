@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace stipple::server {
+namespace stipple {
 
 // "Sun, 06 Nov 1994 08:49:37 GMT". Years 0 to 9999.
 std::string httpDate(std::int64_t seconds);
@@ -15,4 +15,4 @@ std::string httpDate(std::int64_t seconds);
 // the century of the two-digit years of RFC 850: at most 50 years ahead.
 std::optional<std::int64_t> parseHttpDate(std::string_view text, std::int64_t nowSeconds);
 
-} // namespace stipple::server
+} // namespace stipple

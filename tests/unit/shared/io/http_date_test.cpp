@@ -1,8 +1,8 @@
-#include "server/http/http_date.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <catch2/catch.hpp>
 
-using namespace stipple::server;
+using namespace stipple;
 
 namespace {
 constexpr std::int64_t example = 784111777; // the date of RFC 9110 §5.6.7

@@ -1,8 +1,8 @@
-#include "server/http/http_date.hpp"
+#include "shared/io/http_date.hpp"
 
 #include <array>
 
-namespace stipple::server {
+namespace stipple {
 
 namespace {
 
@@ -161,4 +161,4 @@ std::optional<std::int64_t> parseHttpDate(std::string_view text, std::int64_t no
            parts.second;
 }
 
-} // namespace stipple::server
+} // namespace stipple
