@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, describe, test } from 'node:test';
 
-import { counters, keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
+import { counters, keepScreenshot, launch, openPage, readPixels, settle, settleWithPoints } from './support/browser.mjs';
 import { bytesAskedTwice, faultyServer } from './support/faulty_server.mjs';
 import { makeTown, scratchFolder, serve } from './support/program.mjs';
 
@@ -379,6 +379,58 @@ describe('requests', () => {
         assert.ok(changed.stored <= first.stored * 1.1, 'the old version is still there');
         const weak = await visit('store=64', 'W/"3"'); // names no bytes
         assert.ok(weak.data > 1);
+        await context.close();
+    });
+
+    test('of what is here in part only the gaps are fetched: another camera, more points, no byte twice', async () => {
+        const context = await browser.newContext({ viewport: size });
+        const asked = [];
+        const visit = async (query, spacingPixels, turns) => {
+            host.restart();
+            const page = await context.newPage();
+            await page.goto(`${server.address}?cloud=&${query}`);
+            await page.waitForFunction(() => window.stipple !== undefined);
+            // Nodes come in parts: coarse ones first, the rest of the same nodes when points are to be closer.
+            await page.evaluate((detail) => window.stipple.setStyle({ detail }), { mode: 'continuous', spacingPixels });
+            await page.evaluate((address) => window.stipple.open(address, 'Town'), host.address);
+            await settleWithPoints(page);
+            if (turns) await page.getByRole('button', { name: 'Top' }).click();
+            if (turns) await page.waitForTimeout(1500); // it flies there
+            const { session } = await settleWithPoints(page), { rgba } = await readPixels(page);
+            if (query !== '') await storedBytes(page);
+            await page.close();
+            return { session, rgba, data: host.asked.filter(({ range }) => range[1] > 0), sent: host.bytesSent };
+        };
+        asked.push(...(await visit('store=64', 3, false)).data);
+        const more = await visit('store=64', 1, true);
+        assert.ok(more.data.length > 0);
+        asked.push(...more.data);
+        assert.equal(bytesAskedTwice(asked), 0);
+        const fresh = await visit('', 1, true);
+        assert.ok(more.rgba.equals(fresh.rgba), 'another picture');
+        assert.ok(more.sent < fresh.sent, `${more.sent} of ${fresh.sent} bytes`);
+        assert.ok(more.session.bytesReceived > more.sent, `${more.session.bytesReceived} and ${more.sent} bytes`);
+        await context.close();
+    });
+
+    test('a file that was replaced between two visits is not mixed with what is stored of it', async () => {
+        const context = await browser.newContext({ viewport: size });
+        const page = await context.newPage();
+        await page.goto(`${server.address}?cloud=&store=64`);
+        await page.waitForFunction(() => window.stipple !== undefined);
+        await page.evaluate((wanted) => window.stipple.setLimits(wanted), { pointBudget: 20_000 });
+        await page.evaluate((address) => window.stipple.open(address, 'Town'), host.address);
+        await settleWithPoints(page);
+        await storedBytes(page);
+        await page.close();
+        let isReplaced = false; // right after its version was asked for
+        host.fault = ({ range }) => ({ headers: (isReplaced ||= range[1] > 0) ? { etag: '"2"' } : {} });
+        const again = await context.newPage();
+        await again.goto(`${server.address}?cloud=&store=64`);
+        await again.waitForFunction(() => window.stipple !== undefined);
+        await again.evaluate((address) => window.stipple.open(address, 'Town'), host.address);
+        await again.getByText('Town was replaced on its server').waitFor();
+        assert.ok((await settleWithPoints(again)).frame.complete);
         await context.close();
     });
 

@@ -1,14 +1,16 @@
 import { DecoderPool } from './decoder_pool.ts';
 import { Heap } from './heap.ts';
 import type { ViewerProgram } from './program.ts';
+import { contentRangeOf, type Fields, fieldsOf, isGap, rangeOf, spanOf } from './range_answers.ts';
 import { isMixedContent, isThereButNotAllowed, type Requests } from './requests.ts';
 import { StoredFiles } from './stored_files.ts';
-import type { StoredFile } from './stored_ranges.ts';
+import type { Part, StoredFile } from './stored_ranges.ts';
 
 /** ReadFailure of client/web/browser_source.hpp. */
 const enum Failure {
     network = 0,
     shortBody = 1,
+    longBody = 2,
     fileGone = 3,
     notAllowed = 4,
     mixedContent = 5,
@@ -66,7 +68,10 @@ export class Host {
     fetch(request: number, url: string, range: string): void {
         const controller = new AbortController();
         this.requests.set(request, controller);
-        void this.fetchRange(request, url, range, controller).finally(() => this.requests.delete(request));
+        void this.fetchRange(request, url, range, controller.signal).finally(() => {
+            controller.abort(); // what else is on its way for it
+            this.requests.delete(request);
+        });
     }
 
     readFile(request: number, file: number, offset: number, size: number): void {
@@ -98,68 +103,84 @@ export class Host {
         this.decoders.decode(job, message, picture, attributes);
     }
 
-    private async fetchRange(
-        request: number,
-        url: string,
-        range: string,
-        { signal }: AbortController,
-    ): Promise<void> {
-        let failure = Failure.notPrepared;
-        let asked = url;
+    private async fetchRange(request: number, url: string, range: string, signal: AbortSignal): Promise<void> {
+        const sent: Sent = { failure: Failure.notPrepared, asked: url };
         try {
-            const stored = await this.stored.of(url);
-            if (stored && (await this.answerStored(request, stored, range))) return;
+            const stored = await this.stored.of(url), parts = await this.partsOf(request, stored, range);
             if (signal.aborted) return;
-            const prepared = await this.sending.prepared(url, range);
-            asked = prepared.url;
-            if (signal.aborted) return;
-            if (isMixedContent(asked)) return this.fail(request, Failure.mixedContent, '');
-            failure = Failure.network;
-            const response = await fetch(asked, { ...prepared.init, signal });
-            const fields = fieldsOf(response);
-            if (stored && fields.etag !== stored.etag) this.stored.forget(url);
-            const expected = this.acceptHeaders(request, response.status, fields);
+            const answers = await Promise.all(parts.filter(isGap).map((gap) => this.send(url, rangeOf(gap), signal, sent)));
+            const expected = this.judge(request, url, stored, parts, answers);
             if (expected < 0) return; // the program has it aborted
-            failure = Failure.shortBody;
-            const isToStay = fields.etag === stored?.etag;
-            const body = await this.readBody(request, response, isToStay ? expected : 0);
-            if (isToStay && body) void stored.keep(firstOf(range), body);
+            sent.failure = Failure.shortBody;
+            if (parts.length === 1) parts[0]!.end = parts[0]!.at + expected;
+            for (const part of parts) {
+                const isWanted = part.bytes ? this.put(request, part.bytes) : await this.receive(request, part, answers.shift()!, stored, sent);
+                if (!isWanted) return;
+            }
+            this.end(request);
         } catch (error) {
             if (signal.aborted) return;
-            const isHidden = failure === Failure.network && (await isThereButNotAllowed(asked, signal));
+            const isHidden = sent.failure === Failure.network && (await isThereButNotAllowed(sent.asked, signal));
             if (isHidden) this.fail(request, Failure.notAllowed, location.origin);
-            else this.fail(request, failure, navigator.onLine ? messageOf(error) : 'this machine is offline');
+            else this.fail(request, sent.failure, navigator.onLine ? messageOf(error) : 'this machine is offline');
         }
     }
 
-    /** Of the version that was found to be its server's. False: not all of it is there, or nobody wants it any more. */
-    private async answerStored(request: number, stored: StoredFile, range: string): Promise<boolean> {
-        if (!this.requests.has(request)) return false;
+    /** What of the range is stored, in the version that was found to be its server's, and what is not. */
+    private async partsOf(request: number, stored: StoredFile | undefined, range: string): Promise<Part[]> {
+        const all = spanOf(range), end = Math.min(all.end, stored?.sizeBytes ?? 0);
+        if (!stored || all.at >= end || !this.requests.has(request)) return [all];
         if (stored.wasKnown) this.program._stipple_read_is_stored(request);
-        const [first, last] = range.slice('bytes='.length).split('-').map(Number) as [number, number];
-        const end = Math.min(last + 1, stored.sizeBytes);
-        const body = first < end ? await stored.read(first, end).catch(() => undefined) : undefined;
-        if (!body || !this.requests.has(request)) return false;
-        const contentRange = `bytes ${first}-${end - 1}/${stored.sizeBytes}`;
-        const fields = { contentRange, etag: stored.etag, lastModified: '', retryAfter: '', contentLength: body.length };
-        if (this.acceptHeaders(request, 206, fields) >= 0 && this.put(request, body)) this.end(request);
-        return true;
+        return stored.parts(all.at, end).catch(() => [all]);
     }
 
-    /** Each piece goes to its place as it comes, so that the program knows how far the answer is. A copy, if it is `copied` bytes. */
-    private async readBody(request: number, response: Response, copied: number): Promise<Uint8Array | undefined> {
-        const copy = new Uint8Array(copied);
-        const reader = response.body?.getReader();
-        for (let here = 0; ; ) {
+    private async send(url: string, range: string, signal: AbortSignal, sent: Sent): Promise<Response> {
+        const prepared = await this.sending.prepared(url, range);
+        sent.asked = prepared.url;
+        signal.throwIfAborted();
+        sent.failure = isMixedContent(sent.asked) ? Failure.mixedContent : Failure.network;
+        if (sent.failure === Failure.mixedContent) throw new Error('not to be asked for');
+        return fetch(sent.asked, { ...prepared.init, signal });
+    }
+
+    /**
+     * How many bytes the answers bring, as the program judges them; below 0: none of them is wanted. Those to gaps stand for the whole range
+     * if all are as they have to be; else the first that is not speaks.
+     */
+    private judge(request: number, url: string, stored: StoredFile | undefined, parts: Part[], answers: Response[]): number {
+        const fields = answers.map(fieldsOf), gaps = parts.filter(isGap);
+        if (stored && fields.some(({ etag }) => etag !== stored.etag)) this.stored.forget(url);
+        if (!stored || gaps.length === parts.length) return this.acceptHeaders(request, answers[0]!.status, fields[0]!);
+        const isRight = (gap: Part, { contentRange }: Fields): boolean => contentRange === contentRangeOf(gap, stored.sizeBytes);
+        const contentRange = contentRangeOf({ at: parts[0]!.at, end: parts.at(-1)!.end }, stored.sizeBytes);
+        const whole = { contentRange, etag: stored.etag, lastModified: '', retryAfter: '', contentLength: -1 };
+        const odd = gaps.findIndex((gap, i) => answers[i]!.status !== 206 || fields[i]!.etag !== stored.etag || !isRight(gap, fields[i]!));
+        if (odd < 0) return this.acceptHeaders(request, 206, whole);
+        const told = isRight(gaps[odd]!, fields[odd]!) ? { ...fields[odd]!, contentRange } : fields[odd]!;
+        if (this.acceptHeaders(request, answers[odd]!.status, told) >= 0)
+            this.fail(request, Failure.network, 'it does not say any more which version it has');
+        return -1;
+    }
+
+    /** Each piece of an answer goes to its place as it comes, so that the program knows how far it is. False: nobody wants it any more. */
+    private async receive(request: number, gap: Part, response: Response, stored: StoredFile | undefined, sent: Sent): Promise<boolean> {
+        const size = gap.end - gap.at, isToStay = stored !== undefined && fieldsOf(response).etag === stored.etag;
+        const copy = new Uint8Array(isToStay ? size : 0), reader = response.body?.getReader();
+        let here = 0;
+        for (;;) {
             const { done, value } = (await reader?.read()) ?? { done: true, value: undefined };
-            if (done) {
-                this.end(request);
-                return here === copied ? copy : undefined;
+            if (done) break;
+            if (here + value.length > size) {
+                sent.failure = Failure.longBody;
+                throw new Error('too many bytes');
             }
-            if (!this.put(request, value)) return undefined; // taken back, or longer than it may be: aborted
-            if (here + value.length <= copied) copy.set(value, here);
+            if (!this.put(request, value)) return false;
+            if (isToStay) copy.set(value, here);
             here += value.length;
         }
+        if (here < size) throw new Error('too few bytes');
+        if (isToStay) void stored.keep(gap.at, copy);
+        return true;
     }
 
     private acceptHeaders(request: number, status: number, fields: Fields): number {
@@ -201,38 +222,10 @@ export class Host {
     }
 }
 
-/** What an answer's header says; empty where it says nothing, or -1. */
-interface Fields {
-    contentRange: string;
-    etag: string;
-    lastModified: string;
-    retryAfter: string;
-    contentLength: number;
-}
-
-function fieldsOf(response: Response): Fields {
-    const field = (name: string): string => response.headers.get(name) ?? '';
-    const isCoded = field('content-encoding') !== '';
-    return {
-        contentRange: field('content-range'),
-        etag: field('etag'),
-        lastModified: field('last-modified'),
-        retryAfter: inSeconds(field('retry-after'), field('date')),
-        contentLength: isCoded || field('content-length') === '' ? -1 : Number(field('content-length')),
-    };
-}
-
-/** A Retry-After: of a date, the seconds after the answer's own, or after now where that is not shown (shared/io/retry_after.hpp). */
-function inSeconds(retryAfter: string, date: string): string {
-    const timeOf = (text: string): number => Date.parse(/ GMT$/.test(text) ? text : `${text} GMT`);
-    const until = /^[A-Z][a-z]+,? /.test(retryAfter) ? timeOf(retryAfter) : NaN, from = timeOf(date);
-    if (Number.isNaN(until)) return retryAfter;
-    return String(Math.max(0, Math.ceil((until - (Number.isNaN(from) ? Date.now() : from)) / 1000)));
-}
-
-/** Of "bytes=0-65535". */
-function firstOf(range: string): number {
-    return Number(/\d+/.exec(range)![0]);
+/** How far a read has come, and the address that was asked in the end. */
+interface Sent {
+    failure: Failure;
+    asked: string;
 }
 
 function messageOf(error: unknown): string {

@@ -1,5 +1,5 @@
 import { isMixedContent, type Requests } from './requests.ts';
-import { type StoredFile, StoredRanges } from './stored_ranges.ts';
+import type { StoredFile, StoredRanges } from './stored_ranges.ts';
 
 /** The stored versions of the files that are open. Of each its server is asked once which version it has now. */
 export class StoredFiles {
@@ -27,7 +27,7 @@ export class StoredFiles {
     }
 
     private async open(url: string): Promise<StoredFile | undefined> {
-        this.store ??= StoredRanges.open(this.sending.storeBytes);
+        this.store ??= import('./stored_ranges.ts').then(({ StoredRanges }) => StoredRanges.open(this.sending.storeBytes)); // few want it
         const store = await this.store;
         if (!store) return undefined;
         // One byte, not HEAD: signed addresses are often good for GET alone.

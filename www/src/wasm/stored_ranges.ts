@@ -21,6 +21,13 @@ interface Extent {
     bytes: Uint8Array<ArrayBuffer>;
 }
 
+/** Some of a span: from `at` to before `end`; without bytes it is a gap. */
+export interface Part {
+    at: number;
+    end: number;
+    bytes?: Uint8Array<ArrayBuffer>;
+}
+
 export class StoredRanges {
     private constructor(
         private readonly database: IDBDatabase,
@@ -86,19 +93,12 @@ export class StoredFile {
         private readonly makeRoom: (bytes: number) => Promise<boolean>,
     ) {}
 
-    /** The bytes from `first` to before `end`, if all of them are here. */
-    async read(first: number, end: number): Promise<Uint8Array<ArrayBuffer> | undefined> {
+    /** The bytes from `first` to before `end`, in order: what is here, and the gaps between. */
+    async parts(first: number, end: number): Promise<Part[]> {
+        const [from, to] = [first, end - 1].map((at) => [this.id, Math.floor(at / pieceBytes)]);
         const pieces = this.database.transaction('pieces').objectStore('pieces');
-        const bytes = new Uint8Array(end - first);
-        let here = first;
-        for (let piece = Math.floor(first / pieceBytes); piece * pieceBytes < end; piece++)
-            for (const extent of ((await answerOf(pieces.get([this.id, piece]))) ?? []) as Extent[]) {
-                if (extent.at > here || extent.at + extent.bytes.length <= here) continue;
-                const part = extent.bytes.subarray(here - extent.at, end - extent.at);
-                bytes.set(part, here - first);
-                here += part.length;
-            }
-        return here === end ? bytes : undefined;
+        const extents = (await answerOf(pieces.getAll(IDBKeyRange.bound(from, to)))) as Extent[][];
+        return partsOf(first, end, extents.flat());
     }
 
     /** Keeps them, unless there is no room. One after the other, so that room is counted once. */
@@ -129,6 +129,21 @@ export class StoredFile {
         files.put({ ...record, storedBytes: record.storedBytes + added });
         await endOf(change);
     }
+}
+
+/** A span cut into what extents (that do not overlap, in order) have of it, and the gaps between. */
+export function partsOf(first: number, end: number, extents: Extent[]): Part[] {
+    const parts: Part[] = [];
+    let here = first;
+    for (const { at, bytes } of extents) {
+        const from = Math.max(here, at), to = Math.min(end, at + bytes.length);
+        if (from >= to) continue;
+        if (from > here) parts.push({ at: here, end: from });
+        parts.push({ at: from, end: to, bytes: bytes.subarray(from - at, to - at) });
+        here = to;
+    }
+    if (here < end) parts.push({ at: here, end });
+    return parts;
 }
 
 /** Extents that neither overlap nor touch, in order, with one more. */
