@@ -182,6 +182,21 @@ describe('measuring', () => {
         assert.match(await row('circle').getByRole('alert').textContent(), /no circle/);
     });
 
+    test('clicks that come faster than their answers all count, and the end waits for them', async () => {
+        await tool('Area').click();
+        for (const { x, y } of places) await page.mouse.click(x, y);
+        await page.keyboard.press('Backspace');
+        await page.mouse.click(places[3].x, places[3].y);
+        await page.keyboard.press('Enter');
+        await taken(4);
+        const [{ points }] = await measurements();
+        for (const [i, { x, y }] of places.entries()) {
+            const { integers } = await page.evaluate(([x, y]) => window.stipple.pick(x, y), [x, y]);
+            assert.deepEqual(points[i].integers, integers);
+        }
+        assert.equal(await tool('Area').getAttribute('aria-pressed'), 'false');
+    });
+
     test('files for other programs hold what was measured', async () => {
         const area = await measure('Area', 4);
         await page.keyboard.press('Enter');

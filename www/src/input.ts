@@ -21,7 +21,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     };
     /** What a click does there, or the space bar in the middle. */
     const act = (x: number, y: number): void => {
-        if (measuring.isDrawing) void measuring.click(x, y);
+        if (measuring.isDrawing) measuring.click(x, y);
         else if (annotations.isPlacing) void putAnnotation(x, y);
         else void model.picking.show(x, y);
     };
@@ -80,7 +80,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     });
     canvas.addEventListener('pointercancel', lift);
     canvas.addEventListener('dblclick', (event) => {
-        if (measuring.isDrawing) measuring.finish();
+        if (measuring.isDrawing) measuring.finishInTurn();
         else void navigator.flyTo({ x: event.offsetX, y: event.offsetY });
     });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
@@ -123,8 +123,8 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             ' ': () => act(middle.x, middle.y),
             Escape: () => model.letGo(),
             ...(measuring.isDrawing && {
-                Enter: () => measuring.finish(),
-                Backspace: () => measuring.takeBack(),
+                Enter: () => measuring.finishInTurn(),
+                Backspace: () => measuring.takeBackInTurn(),
             }),
         };
         const action = actions[event.key];

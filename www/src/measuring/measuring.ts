@@ -16,6 +16,7 @@ export class Measuring extends EventTarget {
     private lastId = 0;
     private readonly numbers = new Map<MeasureKind, number>();
     private readonly volumes: Volumes;
+    private clicks = Promise.resolve();
 
     constructor(
         private readonly model: Model,
@@ -46,10 +47,18 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
-    /** Takes the point shown at a place of the canvas, in CSS pixels. */
-    async click(x: number, y: number): Promise<void> {
-        const point = await this.pick(x, y);
-        if (!point) return;
+    /** Takes the point shown at a place of the canvas, in CSS pixels. Clicks are answered one after the other, however fast they come. */
+    click(x: number, y: number): void {
+        const { drawn, based } = this;
+        this.inTurn(async () => {
+            const point = await this.pick(x, y);
+            if (point && this.drawn === drawn && this.based === based) this.take(point);
+        });
+    }
+    private inTurn(step: () => void | Promise<void>): void {
+        this.clicks = this.clicks.then(step).catch((error: unknown) => this.model.tell(error));
+    }
+    private take(point: PlacedPoint): void {
         if (this.based) this.setBase(this.based, { from: 'point', point });
         else this.add(point);
     }
@@ -83,7 +92,15 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
-    takeBack(): void {
+    /** Takes the last point back, or is done, once earlier clicks have their points. */
+    takeBackInTurn(): void {
+        this.inTurn(() => this.takeBack());
+    }
+    finishInTurn(): void {
+        this.inTurn(() => this.finish());
+    }
+
+    private takeBack(): void {
         const item = this.drawn;
         if (!item) return;
         item.points = item.points.slice(0, -1);
