@@ -247,7 +247,8 @@ describe('fingers and pen', () => {
     const near = (a, b, size) => assert.ok(norm(minus(a, b)) < 1e-6 * size, `${a} is not ${b}`);
 
     test('one finger and a pen move the camera as the mouse does, two fingers by their middle and spread, three as the other button', async () => {
-        await page.evaluate(() => window.stipple.setStyle({ clipBoxes: [] }));
+        await page.evaluate(() => window.stipple.setStyle({ clipBoxes: [], sizePixels: 6 }));
+        await settle(page);
         const start = await camera(), size = norm(minus(start.position, start.target));
         const expected = await mouse([180, 200], [240, 230]);
         await reset(start);
@@ -279,14 +280,53 @@ describe('fingers and pen', () => {
         const pixels = (norm(way) / (2 * size * Math.tan((start.fovYDegrees * Math.PI) / 360))) * 640;
         assert.ok(Math.abs(pixels - 40) < 0.5, `the picture moved by ${pixels} pixels`);
 
-        // Three: what the right button does, of the place under their middle.
+        // Three: the place under their middle goes with them, and the camera keeps its direction and its distance along it. That
+        // says where the camera is: the place lies at a known depth, where a pixel is so many units.
         await reset(start);
-        const other = await mouse([180, 200], [210, 215], 'right');
+        const place = await findPoint();
+        const { position: grabbed } = await page.evaluate(({ x, y }) => window.stipple.pick(x, y), place); // with the radius of a gesture
+        const across = expectedAfter(start, grabbed, { x: place.x + 30, y: place.y + 15 });
+        assert.ok(norm(minus(across, start.position)) > 1e-3 * size);
+        const three = await fingers(
+            [[place.x - 30, place.y], [place.x, place.y], [place.x + 30, place.y]],
+            [[place.x, place.y + 15], [place.x + 30, place.y + 15], [place.x + 60, place.y + 15]],
+        );
+        exactly(three.position, across);
+        exactly(minus(three.target, three.position), minus(start.target, start.position));
         await reset(start);
-        const three = await fingers([[150, 200], [180, 200], [210, 200]], [[180, 215], [210, 215], [240, 215]]);
-        assert.ok(norm(minus(other.target, start.target)) > 1e-3 * size);
-        near(three.target, other.target, 1e4 * size * Number.EPSILON ** 0.25); // the place is known some events later
+        const other = await mouse([place.x, place.y], [place.x + 30, place.y + 15], 'right');
+        exactly(other.position, across);
     });
+
+    /** To the rounding of world coordinates. */
+    const exactly = (a, b) => assert.ok(norm(minus(a, b)) < 1e-8, `${a} is not ${b}: ${norm(minus(a, b))} off`);
+
+    /** A place of the picture, with room for fingers around it, where there is a point. */
+    async function findPoint() {
+        const found = await page.evaluate(async () => {
+            for (let y = 300; y < 520; y += 20)
+                for (let x = 100; x < 240; x += 20) {
+                    const isFree = document.elementFromPoint(x, y).shadowRoot.elementFromPoint(x, y).tagName === 'CANVAS';
+                    if (isFree && (await window.stipple.pick(x, y, 2))) return { x, y };
+                }
+            return null;
+        });
+        assert.ok(found, 'there is no point in the picture');
+        return found;
+    }
+
+    /** Where the camera is once a place has come to lie at a pixel by moving across the view alone. */
+    function expectedAfter({ position, target, up, fovYDegrees }, place, { x, y }) {
+        const { width, height } = page.viewportSize();
+        const cross = ([a, b, c], [u, v, w]) => [b * w - c * v, c * u - a * w, a * v - b * u];
+        const scaled = (v, by) => v.map((value) => value * by), dot = (a, b) => a.reduce((sum, value, i) => sum + value * b[i], 0);
+        const unit = (v) => scaled(v, 1 / norm(v));
+        const forward = unit(minus(target, position)), right = unit(cross(forward, up)), upwards = cross(right, forward);
+        const away = minus(place, position), depth = dot(away, forward);
+        const unitsPerPixel = (2 * depth * Math.tan((fovYDegrees * Math.PI) / 360)) / height;
+        const goesRight = dot(away, right) - (x - width / 2) * unitsPerPixel, goesUp = dot(away, upwards) + (y - height / 2) * unitsPerPixel;
+        return position.map((value, i) => value + goesRight * right[i] + goesUp * upwards[i]);
+    }
 
     test('a tap asks about the point', async () => {
         await page.evaluate(() => window.stipple.setStyle({ sizePixels: 8 }));

@@ -24,8 +24,11 @@ const walkPart = 0.5;
 export class Navigator {
     mode: NavigationMode = 'orbit';
 
-    /** What is under the pointer since it went down; undefined: not known yet, null: nothing. */
+    /** What was under the pointer when it went down; undefined: not known yet, null: nothing. */
     private grabbed: Vector | null | undefined;
+    /** Where the pointer has gone while that is not known. */
+    private waiting: { from: Place; to: Place; other: boolean } | undefined;
+    private presses = 0;
     private wheelAt: (Place & { time: number }) | undefined;
     private wheelPoint: Vector | null | undefined;
     private pointer: Place = { x: 0, y: 0 };
@@ -38,20 +41,31 @@ export class Navigator {
 
     /** The pointer went down. `other`: with another button, or shift. */
     press(at: Place, other: boolean): void {
-        this.grabbed = undefined;
-        if (this.mode === 'earth' || other) void this.ask(at, (place) => (this.grabbed = place));
+        const press = ++this.presses;
+        const isAsked = this.mode === 'earth' || other;
+        this.grabbed = isAsked ? undefined : null;
+        this.waiting = undefined;
+        const know = (place: Vector | null): void => {
+            if (press !== this.presses) return; // another took its place
+            this.grabbed = place;
+            const { waiting } = this;
+            this.waiting = undefined;
+            if (waiting) this.drag(waiting.from, waiting.to, waiting.other);
+        };
+        if (isAsked) void this.ask(at, know);
     }
 
-    /** The pointer went on from one place to the next. */
+    /** The pointer went on from one place to the next. Until it is known what was under it, the picture stays as it is. */
     drag(from: Place, to: Place, other: boolean): void {
         const { model } = this;
         const dx = to.x - from.x, dy = to.y - from.y;
         if (this.mode === 'fly' && !other) model.camera.lookAround(dx, dy);
         else if (this.mode === 'orbit' && !other) model.camera.orbit(dx, dy);
+        else if (this.grabbed === undefined) this.waiting = { from: this.waiting?.from ?? from, to, other };
         else if (this.mode === 'earth' && other) this.turn(dx, dy);
-        else if (this.grabbed === null || (this.grabbed === undefined && this.mode !== 'earth')) model.camera.pan(dx, dy);
-        else if (this.grabbed && this.mode === 'earth') model.camera.dragGround(this.grabbed, to.x, to.y);
-        else if (this.grabbed) model.camera.dragAtDepth(this.grabbed, to.x, to.y);
+        else if (this.grabbed === null) model.camera.pan(dx, dy);
+        else if (this.mode === 'earth') model.camera.dragGround(this.grabbed, to.x, to.y);
+        else model.camera.dragAtDepth(this.grabbed, to.x, to.y);
     }
 
     private turn(dx: number, dy: number): void {
@@ -136,6 +150,7 @@ export class Navigator {
             use(await this.model.picking.place(x, y));
         } catch (error) {
             this.model.tell(error);
+            use(null);
         }
     }
 }
