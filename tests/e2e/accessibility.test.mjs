@@ -155,9 +155,18 @@ describe('from right to left', () => {
     });
 });
 
-/** What of the controls is cut off: beyond the page's edges, or a text wider than its button. */
+/** What of the controls is cut off: beyond the page's edges, a text wider than its button, a label that breaks within a word. */
 function cutOff() {
     const wrong = [], width = innerWidth;
+    const checkWords = (element) => {
+        const walker = document.createTreeWalker(element, NodeFilter.SHOW_TEXT), range = document.createRange();
+        for (let node = walker.nextNode(); node; node = walker.nextNode())
+            for (const { 0: word, index } of node.data.matchAll(/[\p{Script=Latin}\d]+/gu)) {
+                range.setStart(node, index);
+                range.setEnd(node, index + word.length);
+                if (new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size > 1) wrong.push(`${word} is broken`);
+            }
+    };
     const walk = (root) => {
         for (const element of root.querySelectorAll('*')) {
             if (element.shadowRoot) walk(element.shadowRoot);
@@ -165,6 +174,7 @@ function cutOff() {
             const box = element.getBoundingClientRect();
             if (box.width === 0 || element.matches('.unseen, .unseen *, .label')) continue;
             const name = element.getAttribute('aria-label') ?? element.textContent.trim();
+            if (element.matches('.row > span:first-child, .choice span, button, legend')) checkWords(element);
             if (box.left < 0 || box.right > width) wrong.push(`${name} is cut off: ${box.left} to ${box.right}`);
             if (element.scrollWidth > element.clientWidth + 1 && !element.matches('input, textarea, select, a'))
                 wrong.push(`${name} is wider than its place: ${element.scrollWidth} in ${element.clientWidth}`);

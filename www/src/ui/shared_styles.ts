@@ -41,14 +41,14 @@ export const controlStyles = css`
     }
     .row {
         display: grid;
-        grid-template-columns: 5.8rem 1fr;
+        grid-template-columns: 6.4rem 1fr;
         align-items: center;
         gap: 0.5rem;
         min-height: 2rem;
         margin-top: 0.35rem;
     }
     .row > span:first-child {
-        overflow-wrap: anywhere;
+        overflow-wrap: break-word;
     }
     .value {
         display: grid;
