@@ -24,7 +24,7 @@ before(async () => {
 after(() => town?.close());
 
 const panel = () => page.getByRole('complementary', { name: 'Profile' });
-const shownPoints = async () => Number(await panel().getByRole('status').getAttribute('data-points'));
+const shownPoints = async () => Number(await panel().locator('[data-points]').getAttribute('data-points'));
 const complete = () => panel().getByRole('status').filter({ hasText: 'complete' }).waitFor();
 
 async function rowsOf(address) {

@@ -9,14 +9,16 @@ import { Volumes } from './volumes.ts';
 export class Measuring extends EventTarget {
     items: Measurement[] = [];
     unit: DisplayUnit = 'stored';
+    /** What was measured last, anew or again. */
+    latest: Measurement | undefined;
     /** Whose points are being picked; with none yet, it is not in `items`. */
     private drawn: Measurement | undefined;
     /** The volume whose base the next click tells the height of. */
     private based: Measurement | undefined;
     private lastId = 0;
+    private clicks = Promise.resolve();
     private readonly numbers = new Map<MeasureKind, number>();
     private readonly volumes: Volumes;
-    private clicks = Promise.resolve();
 
     constructor(
         private readonly model: Model,
@@ -132,10 +134,30 @@ export class Measuring extends EventTarget {
     /** Moves a point to the one shown at a place of the canvas; nothing happens where there is none. */
     async move(item: Measurement, index: number, x: number, y: number): Promise<void> {
         const point = await this.pick(x, y);
-        if (!point || !this.items.includes(item) || index >= item.points.length) return;
+        if (point && index < item.points.length) this.put(item, index, point);
+    }
+    private put(item: Measurement, index: number, point: PlacedPoint): void {
+        if (!this.items.includes(item)) return;
         item.points = item.points.map((old, at) => (at === index ? point : old));
         this.measure(item);
         this.changed();
+    }
+
+    /**
+     * Moves a point to the next one that shows in a direction from it (CSS pixels), looked for each `step` pixels up to `reach` away; false
+     * if none is there.
+     */
+    async moveOn(item: Measurement, index: number, [dx, dy]: [number, number], step: number, reach: number): Promise<boolean> {
+        const old = item.points[index], from = old && this.model.surface.project([old.position])[0];
+        if (!from) return false;
+        for (let way = step; way <= reach; way += step) {
+            const point = await this.pick(from.x + way * dx, from.y + way * dy, Math.min(step - 1, 8));
+            if (item.points[index] !== old) return false; // moved otherwise meanwhile
+            if (!point || samePoint(old, point)) continue;
+            this.put(item, index, point);
+            return true;
+        }
+        return false;
     }
 
     /** Takes the place of what was measured. */
@@ -160,6 +182,7 @@ export class Measuring extends EventTarget {
         this.items = this.items.filter((other) => other !== item);
         if (this.drawn === item) this.drawn = undefined;
         if (this.based === item) this.based = undefined;
+        if (this.latest === item) this.latest = undefined;
         this.volumes.stop(item);
         this.changed();
     }
@@ -168,9 +191,9 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
-    private async pick(x: number, y: number): Promise<PlacedPoint | null> {
+    private async pick(x: number, y: number, radius?: number): Promise<PlacedPoint | null> {
         try {
-            return await this.model.picking.pick(x, y);
+            return await this.model.picking.pick(x, y, radius);
         } catch (error) {
             this.model.tell(error);
             return null;
@@ -178,6 +201,7 @@ export class Measuring extends EventTarget {
     }
 
     private measure(item: Measurement): void {
+        this.latest = item;
         delete item.answer;
         delete item.error;
         this.volumes.stop(item);

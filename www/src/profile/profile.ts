@@ -11,10 +11,19 @@ const looks = 3;
 /** The last look is not taken by itself if it promises more. */
 const mostPoints = 3_000_000;
 
+/** What was set up of a profile. */
+export interface ProfileSetting {
+    line: Vector[];
+    width: number;
+    /** Of heights, in its picture. */
+    exaggeration: number;
+}
+
 /** Vertical sections along a line that was drawn: the clouds' points within half the width of it, cut by the page's server or, of other clouds, read by the page. */
 export class Profile extends EventTarget {
     line: Vector[] = [];
     width = 1;
+    exaggeration = 1;
     points = new ProfilePoints();
     /** Of the line, in plan. */
     length = 0;
@@ -40,18 +49,25 @@ export class Profile extends EventTarget {
     }
 
     open(line: Vector[]): void {
-        this.line = line;
-        this.length = line
-            .slice(1)
-            .reduce((sum, [x, y], i) => sum + Math.hypot(x - line[i]![0], y - line[i]![1]), 0);
-        this.width = Number((this.length / 50).toPrecision(1)) || 1;
+        const length = lengthOf(line);
+        this.show({ line, width: Number((length / 50).toPrecision(1)) || 1, exaggeration: this.exaggeration });
+    }
+    show({ line, width, exaggeration }: ProfileSetting): void {
+        Object.assign(this, { line, width, exaggeration, length: lengthOf(line) });
         void this.load();
+    }
+    setting(): ProfileSetting | undefined {
+        const { line, width, exaggeration } = this;
+        return this.isOpen ? { line, width, exaggeration } : undefined;
     }
     close(): void {
         this.abort?.abort();
         this.line = [];
         this.points = new ProfilePoints();
         this.changed();
+    }
+    exaggerate(exaggeration: number): void {
+        if (exaggeration >= 0.1 && exaggeration <= 100) this.exaggeration = exaggeration;
     }
     setWidth(width: number): void {
         if (!(width > 0) || !Number.isFinite(width)) return;
@@ -80,6 +96,8 @@ export class Profile extends EventTarget {
         this.isLoading = true;
         this.changed();
         try {
+            await this.cloudsAreOpen();
+            if (abort.signal.aborted) return;
             const served = this.addresses('csv').length > 0;
             let isWhole = true;
             for (let look = 0, goesOn = served; look <= looks && goesOn; look++) {
@@ -103,6 +121,12 @@ export class Profile extends EventTarget {
         }
         this.isLoading = false;
         this.changed();
+    }
+
+    /** Those of a scene are still on their way. */
+    private async cloudsAreOpen(): Promise<void> {
+        while (this.model.readClouds().some(({ stage }) => stage === 'opening'))
+            await new Promise((resolve) => this.model.addEventListener('change', resolve, { once: true }));
     }
 
     /** One look at all clouds; false if a further one would be too much. */
@@ -151,6 +175,11 @@ export class Profile extends EventTarget {
     private changed(): void {
         this.dispatchEvent(new Event('change'));
     }
+}
+
+/** In plan. */
+function lengthOf(line: Vector[]): number {
+    return line.slice(1).reduce((sum, [x, y], i) => sum + Math.hypot(x - line[i]![0], y - line[i]![1]), 0);
 }
 
 async function refusalOf(response: Response): Promise<Error> {

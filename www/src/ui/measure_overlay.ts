@@ -7,7 +7,16 @@ import { OverlayElement } from './overlay_element.ts';
 
 type Place = { x: number; y: number };
 
-/** What was measured, over the picture: lines, handles that can be dragged to other points, values. */
+const directions: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+/** Pixels between places that are looked at for the next point, and how far away it may be. */
+const fineStep = { step: 3, reach: 60 };
+const coarseStep = { step: 25, reach: 200 };
+
+/**
+ * What was measured, over the picture: lines, handles that can be dragged to other points, values. The handles of a measurement are one
+ * stop of the Tab key; arrows move the one that has the focus to the next point that shows there (with shift, farther), Page Up and Page
+ * Down go to the other handles.
+ */
 export class MeasureOverlay extends OverlayElement {
     static override styles = [
         OverlayElement.overlayStyles,
@@ -51,6 +60,11 @@ export class MeasureOverlay extends OverlayElement {
     ];
 
     private dragging = false;
+    /** Moves by keys, one after the other. */
+    private moves = Promise.resolve();
+    private isMoving = false;
+    /** Of each measurement: the handle that the Tab key comes to. */
+    private readonly stops = new WeakMap<Measurement, number>();
 
     protected override sources(): EventTarget[] {
         return [this.model.measuring];
@@ -63,7 +77,7 @@ export class MeasureOverlay extends OverlayElement {
         let at = 0;
         const next = (count: number): (Place | null)[] => places.slice(at, (at += count));
         // While a tool is in hand, clicks are for points of the cloud, also where a handle is.
-        return html`<svg aria-hidden="true" class=${this.model.measuring.isDrawing ? 'drawing' : ''}>
+        return html`<svg class=${this.model.measuring.isDrawing ? 'drawing' : ''}>
             ${items.map((item) => this.renderItem(item, next(corners(item).length), next(circle(item).length)))}
         </svg>`;
     }
@@ -71,13 +85,18 @@ export class MeasureOverlay extends OverlayElement {
     private renderItem(item: Measurement, points: (Place | null)[], ring: (Place | null)[]): SVGTemplateResult {
         const closed = (kindOf(item.kind).isClosed ?? false) && points.length > 2;
         const line = ring.length > 0 ? path(ring, true) : path(points, closed);
+        const stop = Math.min(this.stops.get(item) ?? 0, points.length - 1), { isDrawing } = this.model.measuring;
         return svg`<g data-kind=${item.kind}>
             ${closed && points.every(Boolean) ? svg`<path class="inside" d=${line}></path>` : ''}
             <path class="under" d=${line}></path>
             <path class="line" d=${line}></path>
             ${points.map((place, index) =>
                 place
-                    ? svg`<circle class="handle" cx=${place.x} cy=${place.y} r="5"
+                    ? svg`<circle class="handle" cx=${place.x} cy=${place.y} r="5" role="button"
+                        tabindex=${index === stop && !isDrawing ? 0 : -1}
+                        aria-label=${this.text('measure.handle', { number: index + 1, name: item.name })}
+                        @focus=${() => this.stopAt(item, index)}
+                        @keydown=${(event: KeyboardEvent) => this.key(event, item, index)}
                         @pointerdown=${(event: PointerEvent) => this.drag(event, item, index)}></circle>`
                     : '',
             )}
@@ -91,7 +110,30 @@ export class MeasureOverlay extends OverlayElement {
         if (!first || item.kind === 'point' || seen.length === 0) return '';
         const x = seen.reduce((sum, place) => sum + place.x, 0) / seen.length;
         const y = seen.reduce((sum, place) => sum + place.y, 0) / seen.length;
-        return svg`<text x=${x} y=${y - 10}>${first.value}</text>`;
+        return svg`<text aria-hidden="true" x=${x} y=${y - 10}>${first.value}</text>`;
+    }
+
+    private stopAt(item: Measurement, index: number): void {
+        this.stops.set(item, index);
+        this.requestUpdate();
+    }
+
+    private key(event: KeyboardEvent, item: Measurement, index: number): void {
+        const direction = directions[event.key], other = { PageUp: -1, PageDown: 1 }[event.key];
+        if ((!direction && !other) || event.ctrlKey || event.altKey || event.metaKey) return;
+        event.preventDefault();
+        if (other) {
+            const handles = [...(event.currentTarget as Element).parentNode!.querySelectorAll<SVGElement>('.handle')];
+            handles[(handles.indexOf(event.currentTarget as SVGElement) + other + handles.length) % handles.length]!.focus();
+        } else if (!event.repeat || !this.isMoving) {
+            const { step, reach } = event.shiftKey ? coarseStep : fineStep;
+            this.moves = this.moves.then(() => this.moveOn(item, index, direction!, step, reach));
+        }
+    }
+    private async moveOn(item: Measurement, index: number, direction: [number, number], step: number, reach: number): Promise<void> {
+        this.isMoving = true;
+        await this.model.measuring.moveOn(item, index, direction, step, reach);
+        this.isMoving = false;
     }
 
     /** The handle follows the pointer from point to point; one question at a time, the last place counts. */

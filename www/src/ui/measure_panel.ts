@@ -157,7 +157,7 @@ export class MeasurePanel extends ModelElement {
 
     /** What was measured last, for those who do not see it appear. */
     private latest(): string {
-        const item = this.measuring.items.at(-1);
+        const item = this.measuring.latest;
         if (!item?.answer) return '';
         const lines = resultLines(item, this.measuring.unit, this.texts).map(({ name, value }) => `${name} ${value}`);
         return this.text('measure.said', { name: item.name, values: this.texts.list(lines) });

@@ -1,5 +1,6 @@
 import { css, html, type PropertyValues, svg, type SVGTemplateResult, type TemplateResult } from 'lit';
 
+import { type CursorWay, neighbour } from '../profile/profile_cursor.ts';
 import type { Profile } from '../profile/profile.ts';
 import { draw, fitted, margin, nearest, panned, type ProfileView, ticks, toPixels, toProfile, zoomed } from '../profile/profile_view.ts';
 import type { RegionFormat } from '../wasm/values.ts';
@@ -12,18 +13,31 @@ import { controlStyles } from './shared_styles.ts';
 const formats = ['laz', 'las', 'csv'];
 const ownFormats: RegionFormat[] = ['laz', 'las', 'csv'];
 
-/** The 2D view of a profile: station to the right, height upwards; drag moves, wheel zooms, a click takes a point to measure from. */
+/** Pixels of one press of an arrow key; what one press of + leaves of the view's sides. */
+const keyStep = 40;
+const keyZoom = 0.8;
+/** Points that show so near to a line upwards, in pixels, are above each other. */
+const columnSlack = 4;
+const ways: Record<string, CursorWay> = { ArrowLeft: 'back', ArrowRight: 'on', ArrowUp: 'up', ArrowDown: 'down' };
+const steps: Record<string, [number, number]> = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+
+/**
+ * The 2D view of a profile: station to the right, height upwards; drag moves, wheel zooms, a click takes a point to measure from. By the
+ * keyboard arrows move, + and - zoom, Home shows all; with shift arrows go from point to point, and Enter or the space bar take the one
+ * that was come to.
+ */
 export class ProfilePanel extends ModelElement {
     static override properties = {
         ...ModelElement.properties,
-        exaggeration: { state: true },
         hovered: { state: true },
         marked: { state: true },
+        said: { state: true },
     };
-    declare exaggeration: number;
     /** Index of the point under the pointer, and of the one that was clicked; -1: none. */
     declare hovered: number;
     declare marked: number;
+    /** Of the point that the keys came to, for those who do not see it. */
+    declare said: string;
 
     static override styles = [
         controlStyles,
@@ -100,13 +114,18 @@ export class ProfilePanel extends ModelElement {
     ];
 
     private shown: ProfileView | undefined;
-    private fittedLength = -1;
-    private readonly letGo = (): void => void (this.hovered = this.marked = -1);
+    /** Somebody has chosen what is in view; until then it is all that is here. */
+    private isMoved = false;
+    private cut: unknown;
+    private readonly letGo = (): void => {
+        this.hovered = this.marked = -1;
+        this.said = '';
+    };
 
     constructor() {
         super();
-        this.exaggeration = 1;
         this.hovered = this.marked = -1;
+        this.said = '';
     }
     override connectedCallback(): void {
         super.connectedCallback();
@@ -153,7 +172,7 @@ export class ProfilePanel extends ModelElement {
                         min="0.1"
                         max="100"
                         aria-label=${this.text('profile.exaggerationLabel')}
-                        .value=${String(this.exaggeration)}
+                        .value=${String(profile.exaggeration)}
                         @change=${(event: Event) => this.exaggerate((event.target as HTMLInputElement).valueAsNumber)}
                     />
                 </label>
@@ -175,6 +194,10 @@ export class ProfilePanel extends ModelElement {
             ${profile.error ? html`<p class="told error" role="alert">${profile.error}</p>` : ''}
             <div
                 class="view"
+                tabindex="0"
+                role="application"
+                aria-label=${this.text('profile.view')}
+                @keydown=${this.key}
                 @wheel=${this.wheel}
                 @pointerdown=${this.press}
                 @pointermove=${this.hover}
@@ -183,7 +206,8 @@ export class ProfilePanel extends ModelElement {
                 <canvas></canvas>
                 ${this.renderAxes()}
             </div>
-            <p class="told">${this.tell()}</p>`;
+            <p class="told">${this.tell()}</p>
+            <p class="unseen" role="status">${this.said}</p>`;
     }
 
     /** Files of a cloud that no server cuts. */
@@ -203,34 +227,40 @@ export class ProfilePanel extends ModelElement {
         )}`;
     }
 
+    /** What is in view: all that is here, unless somebody has moved it since the profile was cut. */
+    override willUpdate(_: PropertyValues): void {
+        const { line, width: across, points, length, exaggeration } = this.profile, cut = JSON.stringify([line, across]);
+        if (cut !== this.cut) this.isMoved = false;
+        this.cut = cut;
+        const width = this.area?.clientWidth ?? 0, height = this.area?.clientHeight ?? 0;
+        if (width === 0 || height === 0) return; // not there yet, or hidden on a narrow page
+        if (!this.isMoved || this.shown?.width !== width || this.shown.height !== height)
+            this.shown = fitted({ width, height }, length, points.heights(), exaggeration);
+    }
+
     override updated(_: PropertyValues): void {
         const { area } = this;
-        if (!area) return;
-        const width = area.clientWidth, height = area.clientHeight;
-        if (width === 0 || height === 0) return; // hidden, on a narrow page
-        const isNew = this.profile.length !== this.fittedLength && this.profile.points.count > 0;
-        if (!this.shown || isNew || this.shown.width !== width || this.shown.height !== height) {
-            if (isNew) this.fittedLength = this.profile.length;
-            this.fit();
-            return;
-        }
+        if (!area || area.clientWidth === 0) return;
+        if (this.shown?.width !== area.clientWidth) return this.requestUpdate(); // it is here now
         const canvas = this.renderRoot.querySelector('canvas')!, ratio = window.devicePixelRatio || 1;
-        canvas.width = Math.round(width * ratio);
-        canvas.height = Math.round(height * ratio);
+        canvas.width = Math.round(this.shown.width * ratio);
+        canvas.height = Math.round(this.shown.height * ratio);
         const context = canvas.getContext('2d')!, image = context.createImageData(canvas.width, canvas.height);
         draw(this.profile.points, this.shown, image, ratio);
         context.putImageData(image, 0, 0);
     }
 
     private fit(): void {
-        const { area } = this;
-        if (!area || !this.profile.isOpen) return;
-        const size = { width: area.clientWidth, height: area.clientHeight };
-        this.shown = fitted(size, this.profile.length, this.profile.points.heights(), this.exaggeration);
+        this.isMoved = false;
+        this.requestUpdate();
+    }
+    private move(view: ProfileView): void {
+        this.shown = view;
+        this.isMoved = true;
         this.requestUpdate();
     }
     private exaggerate(value: number): void {
-        if (value >= 0.1 && value <= 100) this.exaggeration = value;
+        this.profile.exaggerate(value);
         this.fit();
     }
 
@@ -295,9 +325,36 @@ export class ProfilePanel extends ModelElement {
         event.preventDefault();
         if (!this.shown) return;
         const { x, y } = this.placeOf(event);
-        this.shown = zoomed(this.shown, Math.exp(-Math.max(-400, Math.min(400, event.deltaY)) * 0.0015), x, y);
+        this.move(zoomed(this.shown, Math.exp(-Math.max(-400, Math.min(400, event.deltaY)) * 0.0015), x, y));
+    };
+    private readonly key = (event: KeyboardEvent): void => {
+        const view = this.shown, way = ways[event.key];
+        if (!view || event.ctrlKey || event.altKey || event.metaKey) return;
+        if (event.shiftKey && way) this.step(view, way);
+        else if (way) this.move(panned(view, keyStep * steps[event.key]![0], keyStep * steps[event.key]![1]));
+        else if ('+=-'.includes(event.key)) this.move(zoomed(view, event.key === '-' ? keyZoom : 1 / keyZoom, view.width / 2, view.height / 2));
+        else if (event.key === 'Home') this.fit();
+        else if (event.key === 'Enter' || event.key === ' ') this.marked = this.hovered;
+        else return;
+        event.preventDefault();
         this.requestUpdate();
     };
+
+    /** To the next point in a way, from the one that was come to last, or the one nearest to the middle; it comes into view. */
+    private step(view: ProfileView, way: CursorWay): void {
+        const { points } = this.profile;
+        if (points.count === 0) return;
+        this.hovered =
+            this.hovered >= 0
+                ? neighbour(points, this.hovered, way, columnSlack / view.scale)
+                : nearest(points, view, view.width / 2, view.height / 2, Infinity);
+        const { x, y } = toPixels(view, points.station[this.hovered]!, points.height[this.hovered]!);
+        const into = (at: number, low: number, high: number): number => Math.max(low, Math.min(high, at)) - at;
+        const dx = into(x, margin.left + 10, view.width - margin.right - 10), dy = into(y, margin.top + 10, view.height - margin.bottom - 10);
+        if (dx !== 0 || dy !== 0) this.move(panned(view, dx, dy));
+        this.said = this.tell();
+    }
+
     private readonly hover = (event: PointerEvent): void => {
         if (!this.shown || event.buttons !== 0) return;
         const { x, y } = this.placeOf(event);
@@ -309,9 +366,8 @@ export class ProfilePanel extends ModelElement {
         const move = (moved: PointerEvent): void => {
             const at = this.placeOf(moved);
             way += Math.hypot(at.x - last.x, at.y - last.y);
-            if (this.shown && way > 3) this.shown = panned(this.shown, at.x - last.x, at.y - last.y);
+            if (this.shown && way > 3) this.move(panned(this.shown, at.x - last.x, at.y - last.y));
             last = at;
-            this.requestUpdate();
         };
         followPointer(event, move, () => {
             if (way <= 3 && this.shown) this.marked = nearest(this.profile.points, this.shown, last.x, last.y);
