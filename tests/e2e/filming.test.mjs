@@ -251,6 +251,12 @@ describe('the JSON Schema of scenes', () => {
             { ...scene, cameraPath: [{ camera, seconds: 0 }] },
             { ...scene, cameraPath: [{ camera: { position: [1] }, seconds: 1 }] },
             { ...scene, cameraPath: 'around' },
+            { ...scene, profile: 'through the church' },
+            { ...scene, profile: { line: [[0, 0, 0]] } },
+            { ...scene, profile: { line: [[0, 0, 0], [1, 2]] } },
+            { ...scene, profile: { line: [[0, 0, 0], [1, 2, 3]], width: 0 } },
+            { ...scene, profile: { line: [[0, 0, 0], [1, 2, 3]], exaggeration: 1000 } },
+            { ...scene, profile: { line: [[0, 0, 0], [1, 2, 3]], colour: 'red' } },
             { ...scene, legend: 'yes' },
         ];
         // What the page refuses beyond the schema; its description lists it.

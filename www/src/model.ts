@@ -26,7 +26,7 @@ import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
 /**
  * What the page shows and the elements change: the viewer's state as last read, and the parts that do things with it, each
- * of one idea. Events: `change` (something that elements show), `frame` (a new picture), `rest` (the camera stands still),
+ * of one idea. Events: `change` (something that elements show), `frame` (a new picture), `settled` (it has all that it wants), `rest` (the camera stands still),
  * `context` (the graphics context was lost, or is there again).
  */
 export class Model extends EventTarget {
@@ -79,6 +79,8 @@ export class Model extends EventTarget {
     isDisposed = false;
 
     private reportIsDue = false;
+    /** Something was drawn since the picture was whole. */
+    private isUnsettled = false;
     private readonly toldErrors = new Set<string>();
     private readonly addresses = new Map<string, number>(); // address → cloud id
 
@@ -288,6 +290,11 @@ export class Model extends EventTarget {
     /** Tells the elements, at most ten times a second. */
     private drawn(drew: boolean): void {
         if (drew) this.dispatchEvent(new Event('frame'));
+        this.isUnsettled ||= drew;
+        if (this.isUnsettled && this.viewer.settled()) {
+            this.isUnsettled = false;
+            this.dispatchEvent(new Event('settled'));
+        }
         if (this.reportIsDue) return;
         this.reportIsDue = true;
         setTimeout(() => {

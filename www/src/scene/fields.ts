@@ -38,10 +38,7 @@ export class FieldReader {
         return value as number;
     }
     vector(name: string, isRight: (value: number) => boolean = () => true): [number, number, number] {
-        const value = this.take(name);
-        const isOne = Array.isArray(value) && value.length === 3 && value.every((n) => Number.isFinite(n) && isRight(n));
-        if (!isOne) throw new Problem('scene.mustBeVector', { place: this.placeOf(name) });
-        return value as [number, number, number];
+        return readPlace(this.take(name), this.placeOf(name), isRight);
     }
     oneOf<T extends string>(name: string, options: readonly T[], fallback?: T): T {
         const value = this.take(name);
@@ -79,4 +76,11 @@ export class FieldReader {
     private placeOf(name: string): string {
         return this.path ? `${this.path}.${name}` : name;
     }
+}
+
+/** Three numbers. */
+export function readPlace(value: unknown, path: string, isRight: (value: number) => boolean = () => true): [number, number, number] {
+    const isOne = Array.isArray(value) && value.length === 3 && value.every((n) => Number.isFinite(n) && isRight(n));
+    if (!isOne) throw new Problem('scene.mustBeVector', { place: path });
+    return value as [number, number, number];
 }

@@ -4,7 +4,8 @@ import { displayUnits } from '../measuring/units.ts';
 import type { Bounds, Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import { Problem } from '../texts/message.ts';
 import { mostKeyframes } from '../navigation/film.ts';
-import { FieldReader } from './fields.ts';
+import type { ProfileSetting } from '../profile/profile.ts';
+import { FieldReader, readPlace } from './fields.ts';
 import { type Scene, type SceneCloud, type SceneMeasurement, sceneVersion } from './scene.ts';
 
 export const mostSceneBytes = 16 << 20;
@@ -28,6 +29,7 @@ export function readScene(text: string): Scene {
     const version = fields.number('version', 0, isWhole);
     if (version > sceneVersion)
         throw new Problem('scene.tooNew', { version, known: sceneVersion });
+    const profile = fields.optionalObject('profile');
     const scene: Scene = {
         stipple: 'scene',
         version,
@@ -40,6 +42,7 @@ export function readScene(text: string): Scene {
         measurements: fields.list('measurements', 10_000, readMeasurement),
         annotations: fields.list('annotations', 10_000, readAnnotation),
         cameraPath: fields.list('cameraPath', mostKeyframes, readKeyframe),
+        ...(profile && { profile: readProfile(profile, 'profile') }),
         followsView: fields.flag('followsView', false),
         legend: fields.flag('legend', true),
         map: fields.flag('map', false),
@@ -141,6 +144,18 @@ function readKeyframe(value: unknown, path: string): Keyframe {
     };
     fields.finish();
     return keyframe;
+}
+
+function readProfile(value: unknown, path: string): ProfileSetting {
+    const fields = FieldReader.of(value, path);
+    const profile: ProfileSetting = {
+        line: fields.list('line', 10_000, readPlace),
+        width: fields.number('width', 1, (width) => width > 0),
+        exaggeration: fields.number('exaggeration', 1, (times) => times >= 0.1 && times <= 100),
+    };
+    fields.finish();
+    if (profile.line.length < 2) throw new Problem('scene.fewPoints', { place: path, kind: 'profile', number: profile.line.length });
+    return profile;
 }
 
 const deepestTree = 32;

@@ -2,13 +2,14 @@ import type { Annotation } from '../annotations/annotation.ts';
 import type { Measurement, VolumeBase } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
+import type { ProfileSetting } from '../profile/profile.ts';
 import type { Bounds, Camera, Keyframe, Limits, MeasureKind, PlacedPoint, Style } from '../wasm/values.ts';
 
 /**
  * What a person has set up, as JSON: clouds, camera, looks, measurements. A reader of a later version reads earlier ones;
  * fields that are absent have their defaults, fields that nobody knows are an error. www/public/scene.schema.json is its JSON Schema.
  */
-export const sceneVersion = 2;
+export const sceneVersion = 3;
 
 export interface SceneCloud {
     /** Of the file, absolute or relative to the page; or the name of a file that has to be opened by hand. */
@@ -44,6 +45,8 @@ export interface Scene {
     annotations: Annotation[];
     /** Since version 2. */
     cameraPath: Keyframe[];
+    /** The one that is open. Since version 3. */
+    profile?: ProfileSetting;
     /** The range of the colours is that of what is in view. */
     followsView: boolean;
     legend: boolean;
@@ -62,7 +65,8 @@ export function differences<T extends object>(value: T, defaults: T): Partial<T>
 export function sceneMeasurement(item: Measurement, indexOfCloud: (id: number) => number): SceneMeasurement {
     const { kind, name, hidden, base } = item;
     const placed = (point: PlacedPoint): PlacedPoint => placedIn(point, indexOfCloud);
-    const stored: VolumeBase | undefined = base?.from === 'point' ? { from: 'point', point: placed(base.point) } : base;
+    const ofVolume: VolumeBase | undefined = base ?? (kind === 'volume' ? { from: 'rim' } : undefined);
+    const stored: VolumeBase | undefined = ofVolume?.from === 'point' ? { from: 'point', point: placed(ofVolume.point) } : ofVolume;
     return { kind, name, hidden, points: item.points.map(placed), ...(stored && { base: stored }) };
 }
 

@@ -1,3 +1,4 @@
+import { kindOf } from '../measuring/measurement.ts';
 import type { Model } from '../model.ts';
 import type { Limits, PlacedPoint, Style } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
@@ -18,9 +19,9 @@ export class Scenes {
 
     scene(): Scene {
         const { model, viewer } = this;
-        const clouds = viewer.clouds();
+        const clouds = viewer.clouds(), profile = model.profile.setting();
         const indexOfCloud = (id: number): number => clouds.findIndex((cloud) => cloud.id === id);
-        const items = model.measuring.items.filter((item) => item.answer ?? item.error);
+        const items = model.measuring.items.filter(({ kind, points }) => points.length >= kindOf(kind).least);
         return {
             stipple: 'scene',
             version: sceneVersion,
@@ -36,6 +37,7 @@ export class Scenes {
             measurements: items.map((item) => sceneMeasurement(item, indexOfCloud)),
             annotations: model.annotations.items,
             cameraPath: model.film.keyframes,
+            ...(profile && { profile }),
             followsView: model.looks.followsView,
             legend: model.looks.showsLegend,
             map: model.isMapOpen,
@@ -77,6 +79,8 @@ export class Scenes {
         model.looks.followsView = scene.followsView;
         model.looks.showsLegend = scene.legend;
         model.isMapOpen = scene.map;
+        if (scene.profile) model.profile.show(scene.profile);
+        else model.profile.close();
         model.camera.rememberSoon();
     }
 

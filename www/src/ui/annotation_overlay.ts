@@ -81,10 +81,10 @@ export class AnnotationOverlay extends OverlayElement {
 
     override connectedCallback(): void {
         super.connectedCallback();
-        this.model.addEventListener('rest', this.rest);
+        for (const event of ['rest', 'settled']) this.model.addEventListener(event, this.rest);
     }
     override disconnectedCallback(): void {
-        this.model.removeEventListener('rest', this.rest);
+        for (const event of ['rest', 'settled']) this.model.removeEventListener(event, this.rest);
         super.disconnectedCallback();
     }
     protected override sources(): EventTarget[] {
