@@ -134,6 +134,9 @@ export class Model extends EventTarget {
     isOpen(address: string): boolean {
         return this.addresses.has(address);
     }
+    idOf(address: string): number | undefined {
+        return this.addresses.get(address);
+    }
     /** Of a cloud that was opened by one. */
     addressOf(id: number): string | undefined {
         return [...this.addresses].find(([, opened]) => opened === id)?.[0];

@@ -43,12 +43,13 @@ export class Clipping {
     }
 
     /** Addresses of the server's points of each cloud, where this page's server has it. */
-    apisOfClouds(): { name: string; api: string }[] {
+    apisOfClouds(): { cloud: number; name: string; api: string }[] {
         const { server } = this.model;
         if (!server) return [];
         return this.model.listing.clouds
             .filter((cloud) => this.model.isOpen(cloud.address))
-            .map(({ id, name }) => ({
+            .map(({ id, name, address }) => ({
+                cloud: this.model.idOf(address)!,
                 name,
                 api: new URL(`api/v1/clouds/${encodeURIComponent(id)}`, server).href,
             }));

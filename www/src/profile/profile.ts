@@ -1,7 +1,7 @@
 import type { Model } from '../model.ts';
 import { reasonOf } from '../problem_document.ts';
 import { Problem } from '../texts/message.ts';
-import type { RegionOf, Vector } from '../wasm/values.ts';
+import type { CloudState, RegionOf, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 import { ProfilePoints, readProfile } from './profile_points.ts';
 
@@ -31,12 +31,18 @@ export class Profile extends EventTarget {
     isComplete = false;
     error = '';
     private abort: AbortController | undefined;
+    /** The clouds that were cut. */
+    private cut = '';
 
     constructor(
         private readonly model: Model,
         private readonly viewer: Viewer,
     ) {
         super();
+        // Clouds that come, go, are shown or hidden.
+        model.addEventListener('change', () => {
+            if (this.isOpen && !this.isLoading && String(this.shown()) !== this.cut) void this.load();
+        });
     }
 
     /** What it is cut from. */
@@ -83,7 +89,20 @@ export class Profile extends EventTarget {
             format,
             ...extra,
         });
-        return this.model.clipping.apisOfClouds().map(({ name, api }) => ({ name, href: `${api}/profile?${query}` }));
+        const shown = this.shown();
+        return this.model.clipping
+            .apisOfClouds()
+            .filter(({ cloud }) => shown.includes(cloud))
+            .map(({ name, api }) => ({ name, href: `${api}/profile?${query}` }));
+    }
+    /** Those whose points the page reads itself. */
+    ownClouds(): CloudState[] {
+        const shown = this.shown();
+        return this.model.clipping.cloudsWithoutApi().filter(({ id }) => shown.includes(id));
+    }
+    /** Hidden clouds are not cut. */
+    private shown(): number[] {
+        return this.model.clouds.filter(({ visible, stage }) => visible && stage === 'ready').map(({ id }) => id);
     }
 
     /** Coarse points first, then finer ones in their place. What was under way is given up at once. */
@@ -98,6 +117,7 @@ export class Profile extends EventTarget {
         try {
             await this.cloudsAreOpen();
             if (abort.signal.aborted) return;
+            this.cut = String(this.shown());
             const served = this.addresses('csv').length > 0;
             let isWhole = true;
             for (let look = 0, goesOn = served; look <= looks && goesOn; look++) {
@@ -108,7 +128,7 @@ export class Profile extends EventTarget {
                 isWhole = isLast && goesOn;
                 this.changed();
             }
-            for (const { id } of this.model.clipping.cloudsWithoutApi()) {
+            for (const { id } of this.ownClouds()) {
                 isWhole = (await this.read(id, abort)) && isWhole;
                 if (abort.signal.aborted) return;
             }

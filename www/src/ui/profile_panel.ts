@@ -187,7 +187,7 @@ export class ProfilePanel extends ModelElement {
                             servedLink(this.model, href, format, `${name}-profile`, this.text('profile.allPoints', { name })),
                         ),
                 )}
-                ${this.model.clipping.cloudsWithoutApi().map(({ id, name }) => this.renderOwnFiles(id, name))}
+                ${profile.ownClouds().map(({ id, name }) => this.renderOwnFiles(id, name))}
                 <a href="" @click=${(event: Event) => this.savePicture(event)}>SVG</a>
                 <button class="quiet close" aria-label=${this.text('profile.close')} @click=${() => profile.close()}>✕</button>
             </div>
