@@ -3,15 +3,14 @@
 
 #include "client/headless/http_url.hpp"
 #include "client/headless/stored_source.hpp"
+#include "tests/http/support/listener.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/test_server.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-#include <arpa/inet.h>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <filesystem>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <thread>
 #include <unistd.h>
@@ -33,29 +32,19 @@ class FixedServer {
   public:
     explicit FixedServer(std::string answer, bool closes = true)
         : answer_(std::move(answer)), closes_(closes) {
-        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
-        ::listen(listener_, 8);
-        ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-        url_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/x";
         thread_ = std::thread([this] { run(); });
     }
     ~FixedServer() {
         ends_ = true;
-        ::shutdown(listener_, SHUT_RDWR);
+        listener_.stop();
         thread_.join();
-        ::close(listener_);
     }
-    const std::string& url() const { return url_; }
+    std::string url() const { return listener_.origin() + "/x"; }
 
   private:
     void run() {
         while (!ends_) {
-            int client = ::accept(listener_, nullptr, nullptr);
+            int client = listener_.accept();
             if (client < 0)
                 return;
             char request[4096];
@@ -66,9 +55,9 @@ class FixedServer {
             ::close(client);
         }
     }
-    std::string answer_, url_;
+    std::string answer_;
     bool closes_;
-    int listener_ = -1;
+    Listener listener_;
     std::atomic<bool> ends_{false};
     std::thread thread_;
 };

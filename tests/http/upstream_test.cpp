@@ -3,21 +3,18 @@
 #include "client/headless/http_source.hpp"
 #include "client/headless/tls_trust.hpp"
 #include "server/access/token.hpp"
+#include "tests/http/support/listener.hpp"
 #include "tests/http/support/raw_client.hpp"
 #include "tests/http/support/scripted_http_server.hpp"
 #include "tests/http/support/test_server.hpp"
 
-#include <arpa/inet.h>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <netinet/in.h>
 #include <nlohmann/json.hpp>
-#include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -78,23 +75,10 @@ double metric(const server::Server& server, const std::string& name) {
 // Accepts and says nothing.
 class SilentServer {
   public:
-    SilentServer() {
-        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
-        ::listen(listener_, 8);
-        ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-        port_ = ntohs(address.sin_port);
-    }
-    ~SilentServer() { ::close(listener_); }
-    std::string url() const { return "http://127.0.0.1:" + std::to_string(port_) + "/town.stipple"; }
+    std::string url() const { return listener_.origin() + "/town.stipple"; }
 
   private:
-    int listener_ = -1;
-    std::uint16_t port_ = 0;
+    Listener listener_;
 };
 
 void replace(const fs::path& cloud, const fs::path& with) {

@@ -1,11 +1,11 @@
 // An HTTP server that answers as a test says: for redirects, tokens and other things that ours never does.
 #pragma once
 
-#include <arpa/inet.h>
+#include "tests/http/support/listener.hpp"
+
 #include <functional>
 #include <list>
 #include <mutex>
-#include <netinet/in.h>
 #include <string>
 #include <sys/socket.h>
 #include <thread>
@@ -20,19 +20,10 @@ class ScriptedHttpServer {
     using Answer = std::function<std::string(const std::string& header)>;
 
     explicit ScriptedHttpServer(Answer answer) : answer_(std::move(answer)) {
-        listener_ = ::socket(AF_INET, SOCK_STREAM, 0);
-        sockaddr_in address{};
-        address.sin_family = AF_INET;
-        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-        socklen_t size = sizeof address;
-        ::bind(listener_, reinterpret_cast<sockaddr*>(&address), size);
-        ::listen(listener_, 64);
-        ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-        port_ = ntohs(address.sin_port);
         acceptor_ = std::thread([this] { acceptForever(); });
     }
     ~ScriptedHttpServer() {
-        ::shutdown(listener_, SHUT_RDWR);
+        listener_.stop();
         acceptor_.join();
         {
             std::lock_guard lock(mutex_);
@@ -41,12 +32,11 @@ class ScriptedHttpServer {
         }
         for (std::thread& thread : threads_)
             thread.join();
-        ::close(listener_);
     }
     ScriptedHttpServer(const ScriptedHttpServer&) = delete;
     ScriptedHttpServer& operator=(const ScriptedHttpServer&) = delete;
 
-    std::string origin() const { return "http://127.0.0.1:" + std::to_string(port_); }
+    std::string origin() const { return listener_.origin(); }
     std::vector<std::string> requests() const { // the headers that came
         std::lock_guard lock(mutex_);
         return requests_;
@@ -58,7 +48,7 @@ class ScriptedHttpServer {
 
   private:
     void acceptForever() {
-        for (int client; (client = ::accept(listener_, nullptr, nullptr)) >= 0;) {
+        for (int client; (client = listener_.accept()) >= 0;) {
             std::lock_guard lock(mutex_);
             clients_.push_back(client);
             threads_.emplace_back([this, client] { serve(client); });
@@ -89,8 +79,7 @@ class ScriptedHttpServer {
     }
 
     const Answer answer_;
-    int listener_ = -1;
-    std::uint16_t port_ = 0;
+    Listener listener_{64};
     mutable std::mutex mutex_;
     std::vector<std::string> requests_;
     std::list<int> clients_;
