@@ -1,5 +1,7 @@
-// What a test that damages bytes one by one tries in each of them.
+// Bytes that tests are made of, and what those that damage bytes one by one try in each of them.
 #pragma once
+
+#include "shared/base/bytes.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -13,6 +15,14 @@ inline constexpr bool isAddressSanitized = __has_feature(address_sanitizer);
 #else
 inline constexpr bool isAddressSanitized = false;
 #endif
+
+// `first`, the one after it, and so on; 0 comes after 255.
+inline Bytes countingBytes(std::uint64_t first, std::size_t count) {
+    Bytes bytes(count);
+    for (std::size_t i = 0; i < count; ++i)
+        bytes[i] = static_cast<std::uint8_t>(first + i);
+    return bytes;
+}
 
 // The extremes, and every value that differs from `original` in one bit.
 inline std::vector<std::uint8_t> likelyDamage(std::uint8_t original) {

@@ -159,12 +159,12 @@ std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t 
     return nodes;
 }
 
-TestView octreeView(Projection projection) {
+TestView octreeView(Projection projection, double halfHeight) {
     TestView view;
     view.position = {1.2345, -17.7, 3.21};
     view.target = {0.3, 0.1, -0.2};
     view.projection = projection;
-    view.halfHeight = 7;
+    view.halfHeight = halfHeight;
     return view;
 }
 

@@ -55,7 +55,7 @@ std::vector<Attribute> attributesOf(const TestNode& node);
 std::vector<TestNode> randomOctree(std::uint64_t seed, int depth, std::uint32_t pointsPerNode, int rootBits,
                                    Vec3d corner, double scale);
 // From near one of 10 units around the origin, past all of its sides.
-TestView octreeView(Projection projection);
+TestView octreeView(Projection projection, double halfHeight = 7);
 // The spacing of the finest node that holds the point, found by looking at all nodes of such an octree.
 double finestSpacing(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);
 int finestLevel(const std::vector<TestNode>& octree, const TestNode& node, const TestPoint& point);

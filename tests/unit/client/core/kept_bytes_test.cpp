@@ -1,5 +1,6 @@
 #include "client/core/byte_ranges.hpp"
 #include "client/core/kept_bytes.hpp"
+#include "tests/support/byte_values.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -7,33 +8,23 @@
 #include <set>
 
 using namespace stipple;
-
-namespace {
-
-Bytes numbered(std::uint64_t offset, std::size_t size) {
-    Bytes bytes(size);
-    for (std::size_t i = 0; i < size; ++i)
-        bytes[i] = static_cast<std::uint8_t>(offset + i);
-    return bytes;
-}
-
-} // namespace
+using stipple::test::countingBytes;
 
 TEST_CASE("kept bytes are found from where a range begins, over parts that touch") {
     KeptBytes kept;
-    kept.add(1, 100, numbered(100, 50));
-    kept.add(1, 150, numbered(150, 10));
-    kept.add(1, 200, numbered(200, 10));
-    kept.add(2, 160, numbered(0, 40));
+    kept.add(1, 100, countingBytes(100, 50));
+    kept.add(1, 150, countingBytes(150, 10));
+    kept.add(1, 200, countingBytes(200, 10));
+    kept.add(2, 160, countingBytes(0, 40));
     CHECK(kept.sizeBytes() == 110);
     CHECK(kept.headBytes(1, {100, 200}) == 60);
     CHECK(kept.headBytes(1, {120, 20}) == 20);
     CHECK(kept.headBytes(1, {99, 20}) == 0);
     CHECK(kept.headBytes(1, {160, 5}) == 0);
     CHECK(kept.headBytes(3, {100, 5}) == 0);
-    Bytes bytes = numbered(110, 5);
+    Bytes bytes = countingBytes(110, 5);
     kept.append(1, {115, 42}, bytes);
-    CHECK(bytes == numbered(110, 47));
+    CHECK(bytes == countingBytes(110, 47));
 }
 
 TEST_CASE("the oldest kept bytes go first, and those of a cloud with it") {
@@ -53,7 +44,7 @@ TEST_CASE("the oldest kept bytes go first, and those of a cloud with it") {
 TEST_CASE("kept bytes that were used lately stay, the others go first") {
     KeptBytes kept;
     for (std::uint64_t i = 0; i < 4; ++i)
-        kept.add(1, i * 100, numbered(i * 100, 100));
+        kept.add(1, i * 100, countingBytes(i * 100, 100));
     Bytes used;
     kept.append(1, {20, 10}, used);
     kept.limit(200);
@@ -65,18 +56,18 @@ TEST_CASE("kept bytes that were used lately stay, the others go first") {
 
 TEST_CASE("what is kept again takes no more room, and a longer part the place of shorter ones") {
     KeptBytes kept;
-    kept.add(1, 100, numbered(100, 50));
-    kept.add(1, 110, numbered(110, 20));
+    kept.add(1, 100, countingBytes(100, 50));
+    kept.add(1, 110, countingBytes(110, 20));
     CHECK(kept.sizeBytes() == 50);
-    kept.add(1, 170, numbered(170, 10));
-    kept.add(1, 100, numbered(100, 90));
+    kept.add(1, 170, countingBytes(170, 10));
+    kept.add(1, 100, countingBytes(100, 90));
     CHECK(kept.sizeBytes() == 90);
     CHECK(kept.headBytes(1, {100, 200}) == 90);
-    kept.add(1, 150, numbered(150, 100)); // over the end of one
+    kept.add(1, 150, countingBytes(150, 100)); // over the end of one
     CHECK(kept.headBytes(1, {100, 200}) == 150);
     Bytes bytes;
     kept.append(1, {100, 150}, bytes);
-    CHECK(bytes == numbered(100, 150));
+    CHECK(bytes == countingBytes(100, 150));
     kept.erase(1, {245, 3}); // damaged
     CHECK(kept.headBytes(1, {100, 200}) == 90);
     CHECK(kept.headBytes(1, {200, 10}) == 0);
@@ -96,13 +87,13 @@ TEST_CASE("kept bytes are what they were, in whatever order they come and go") {
             kept.erase(1, {offset, random() % 20});
             break;
         default:
-            kept.add(1, offset, numbered(offset, random() % 90));
+            kept.add(1, offset, countingBytes(offset, random() % 90));
         }
         ByteRange asked{random() % 600, random() % 200};
         asked.size = kept.headBytes(1, asked);
         Bytes bytes;
         kept.append(1, asked, bytes);
-        REQUIRE(bytes == numbered(asked.offset, static_cast<std::size_t>(asked.size)));
+        REQUIRE(bytes == countingBytes(asked.offset, static_cast<std::size_t>(asked.size)));
     }
     kept.limit(0);
     CHECK(kept.sizeBytes() == 0);

@@ -1,21 +1,13 @@
 #include "client/region/piece_sink.hpp"
 
+#include "tests/support/byte_values.hpp"
+
 #include <catch2/catch.hpp>
 
 #include <random>
 
 using namespace stipple;
-
-namespace {
-
-Bytes bytesOf(std::size_t count, std::uint8_t first) {
-    Bytes bytes(count);
-    for (std::size_t i = 0; i < count; ++i)
-        bytes[i] = static_cast<std::uint8_t>(first + i);
-    return bytes;
-}
-
-} // namespace
+using stipple::test::countingBytes;
 
 TEST_CASE("pieces and patches together are the file that memory would have") {
     std::mt19937 random(3);
@@ -25,7 +17,7 @@ TEST_CASE("pieces and patches together are the file that memory would have") {
         Bytes expected, taken;
         MemorySink memory(expected);
         for (int step = 0; step < 40; ++step) {
-            Bytes bytes = bytesOf(random() % 50, static_cast<std::uint8_t>(random()));
+            Bytes bytes = countingBytes(random(), random() % 50);
             if (random() % 3 == 0 && expected.size() > bytes.size()) {
                 std::uint64_t at = random() % (expected.size() - bytes.size());
                 REQUIRE(memory.overwrite(at, bytes).ok());
@@ -51,9 +43,9 @@ TEST_CASE("pieces and patches together are the file that memory would have") {
 TEST_CASE("bytes that were never there can't be written over") {
     auto pieces = std::make_shared<Pieces>();
     PieceSink sink(pieces);
-    REQUIRE(sink.append(bytesOf(10, 0)).ok());
+    REQUIRE(sink.append(countingBytes(0, 10)).ok());
     pieces->take();
-    CHECK(sink.overwrite(0, bytesOf(10, 1)).ok());
-    CHECK_FALSE(sink.overwrite(0, bytesOf(11, 1)).ok());
-    CHECK_FALSE(sink.overwrite(~0ull, bytesOf(2, 1)).ok());
+    CHECK(sink.overwrite(0, countingBytes(1, 10)).ok());
+    CHECK_FALSE(sink.overwrite(0, countingBytes(1, 11)).ok());
+    CHECK_FALSE(sink.overwrite(~0ull, countingBytes(1, 2)).ok());
 }

@@ -16,14 +16,8 @@ namespace {
 
 constexpr double spacing = 0.35;
 
-TestView viewOf(Projection projection) {
-    TestView view;
-    view.position = {1.2345, -17.7, 3.21};
-    view.target = {0.3, 0.1, -0.2};
-    view.projection = projection;
-    view.halfHeight = 9;
-    return view;
-}
+// World units from the picture's middle to its upper edge.
+constexpr double viewHalfHeight = 9;
 
 FramePlan continuousPlan(const std::vector<TestNode>& nodes, const TestView& view, const Style& style) {
     FramePlan plan = testPlan(nodes, view, style);
@@ -88,7 +82,7 @@ TEST_CASE("the points drawn are those whose spacing exceeds the target, by defin
     for (Projection projection : {Projection::perspective, Projection::orthographic})
         for (double falloff : {0.0, 0.5, 1.0})
             for (double pixels : {2.5, 3.5}) {
-                TestView view = viewOf(projection);
+                TestView view = octreeView(projection, viewHalfHeight);
                 Style style = styleOf(pixels, falloff);
                 style.detail.growthRange = 0; // whole or not at all
                 std::vector<TestNode> nodes{randomNode(1, 4000, 10, {-5, -5, -5}, 0.01)};
@@ -146,7 +140,7 @@ TEST_CASE("a point grows from a pixel to its whole size while the target falls t
 TEST_CASE("threads change nothing", "[software]") {
     std::vector<TestNode> nodes{randomNode(1, 40'000, 10, {-5, -5, -5}, 0.01)};
     Style style = styleOf(0.8, 0.5);
-    FramePlan plan = continuousPlan(nodes, viewOf(Projection::perspective), style);
+    FramePlan plan = continuousPlan(nodes, octreeView(Projection::perspective, viewHalfHeight), style);
     Image one = SoftwareRenderer::create(1)->render(plan);
     CHECK(SoftwareRenderer::create(3)->render(plan).rgba == one.rgba);
 }
@@ -164,7 +158,7 @@ TEST_CASE("software and GLES draw the same picture with continuous detail", "[gl
     std::size_t drawn = 0;
     for (Projection projection : {Projection::perspective, Projection::orthographic})
         for (const Style& style : styles()) {
-            FramePlan plan = continuousPlan(nodes, viewOf(projection), style);
+            FramePlan plan = continuousPlan(nodes, octreeView(projection, viewHalfHeight), style);
             Image a = software->render(plan);
             Image b = glesPicture(*context, **gles, plan);
             measure::PixelError apart = measure::pixelError(a, b, 2);

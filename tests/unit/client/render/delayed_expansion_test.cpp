@@ -25,14 +25,8 @@ Style lateStyle(double pixels, PointShape shape = PointShape::circle) {
     return style;
 }
 
-TestView viewOf(Projection projection) {
-    TestView view;
-    view.position = {1.2345, -17.7, 3.21};
-    view.target = {0.3, 0.1, -0.2};
-    view.projection = projection;
-    view.halfHeight = 9;
-    return view;
-}
+// World units from the picture's middle to its upper edge.
+constexpr double viewHalfHeight = 9;
 
 std::vector<Style> styles() {
     std::vector<Style> all;
@@ -136,7 +130,7 @@ TEST_CASE("what lies behind another point's centre is lost, what is nearer never
 
 TEST_CASE("threads change nothing of an expanded picture", "[software]") {
     for (const Style& style : styles()) {
-        FramePlan plan = testPlan(tree(), viewOf(Projection::perspective), style);
+        FramePlan plan = testPlan(tree(), octreeView(Projection::perspective, viewHalfHeight), style);
         Image one = SoftwareRenderer::create(1)->render(plan);
         CHECK(SoftwareRenderer::create(3)->render(plan).rgba == one.rgba);
     }
@@ -155,7 +149,7 @@ TEST_CASE("expanded software and GLES pictures are the same", "[gles]") {
         for (Style style : styles())
             for (double continuous : {0.0, 6.0}) {
                 style.detail.mode = continuous > 0 ? DetailMode::continuous : DetailMode::discrete;
-                FramePlan plan = testPlan(tree(), viewOf(projection), style);
+                FramePlan plan = testPlan(tree(), octreeView(projection, viewHalfHeight), style);
                 plan.detailPixels = continuous;
                 Image a = software->render(plan);
                 Image b = glesPicture(*context, **gles, plan);
