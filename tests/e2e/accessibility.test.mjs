@@ -36,6 +36,16 @@ async function checkAxe(what) {
     await page.emulateMedia({ colorScheme: 'dark' });
 }
 
+/** Panels that lie on each other, by the parts of the page that they are. */
+function overlapping() {
+    const app = document.querySelector('stipple-viewer').shadowRoot.querySelector('stipple-app').shadowRoot;
+    const panels = [...app.querySelectorAll('.panel, .status')].filter((panel) => panel.getBoundingClientRect().width > 0);
+    const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1;
+    return panels.flatMap((a, i) =>
+        panels.slice(i + 1).filter((b) => meet(a.getBoundingClientRect(), b.getBoundingClientRect())).map((b) => `${a.className} and ${b.className}`),
+    );
+}
+
 describe('by the keyboard alone', () => {
     test('every tool is reached, works, and lets go', async () => {
         await page.evaluate(() => document.activeElement?.blur());
@@ -132,6 +142,9 @@ describe('by the keyboard alone', () => {
     test('with every panel open, axe-core finds nothing serious in either theme', async () => {
         await page.evaluate(() => window.stipple.setLimits({ pointBudget: -1 })); // a notice, too
         await page.getByRole('alert').first().waitFor();
+        await page.getByRole('button', { name: 'Map', exact: true }).click();
+        await page.locator('stipple-map[data-camera]').waitFor();
+        assert.deepEqual(await page.evaluate(overlapping), []);
         await checkAxe('all_panels');
         await page.getByRole('button', { name: 'Help' }).click();
         await checkAxe('help');
@@ -215,8 +228,9 @@ describe('on a telephone', () => {
         const box = await controls.boundingBox();
         assert.ok(box.x >= 0 && box.x + box.width <= 360 && box.y + box.height <= 640 && box.height <= 400, JSON.stringify(box));
         assert.deepEqual(await page.evaluate(cutOff), []);
+        assert.deepEqual(await page.evaluate(overlapping), []);
         await checkAxe('telephone');
-        for (const name of ['Close the point', 'Close the profile']) await page.getByRole('button', { name }).click();
+        for (const name of ['Close the point', 'Close the profile', 'Close the map']) await page.getByRole('button', { name }).click();
         await page.getByRole('button', { name: 'Counters' }).click();
         await page.getByRole('button', { name: 'Hide', exact: true }).first().click();
         await keepScreenshot(page, 'telephone_closed');

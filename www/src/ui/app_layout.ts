@@ -37,9 +37,15 @@ export const appLayout = css`
         padding: 8px 10px;
     }
     .counters {
-        grid-column: 3;
+        grid-column: 2;
         grid-row: 1;
+        justify-self: end;
         width: 250px;
+    }
+    /* One above the other, beside the map. */
+    .counters:has(~ .point),
+    .counters ~ .point {
+        max-height: calc(50% - 6px);
     }
     .point {
         grid-column: 2;
@@ -139,7 +145,9 @@ export const appLayout = css`
             align-self: start;
         }
         /* One at a time. */
-        .counters:has(~ .point, ~ .profile),
+        .counters:has(~ .point, ~ .map, ~ .profile),
+        .map:has(~ .profile),
+        .point ~ .map,
         .point ~ .profile {
             display: none;
         }
