@@ -185,6 +185,38 @@ describe('camera paths', () => {
         assert.deepEqual(complaints, []);
         await page.close();
     });
+
+    test('are shown with their own sides while they are written', async () => {
+        const { page } = await openTown();
+        await style(page, { sizePixels: 3, shape: 'square', background: [255, 0, 0] });
+        await setUp(page);
+        await wantSize(page, 200, 600);
+        await page.getByLabel('Pictures a second').fill('60');
+        await page.getByLabel('Pictures a second').press('Tab');
+        /** From the first column of the page that shows the picture's background to the last. */
+        const redColumns = async () => {
+            const path = join(folder.path, 'page.png');
+            await page.screenshot({ path, caret: 'initial' });
+            const { width, rgba } = await readPng(path);
+            let [first, last] = [width, 0];
+            for (let i = 0; i < rgba.length / 4; i++) {
+                if (rgba[4 * i] < 250 || rgba[4 * i + 1] > 5 || rgba[4 * i + 2] > 5) continue;
+                first = Math.min(first, i % width);
+                last = Math.max(last, i % width);
+            }
+            return last + 1 - first;
+        };
+        const { width, height } = await page.locator('canvas').first().boundingBox(), before = await redColumns();
+        assert.ok(before > width / 2, `${before} of ${width} pixels`);
+        await button(page, 'Write the pictures').click();
+        await page.getByRole('button', { name: /^Give up/ }).waitFor();
+        const narrow = await redColumns();
+        assert.ok(narrow > 0 && narrow <= height / 3 + 1, `${narrow} of ${width} pixels`);
+        await page.getByRole('button', { name: /^Give up/ }).click();
+        await button(page, 'Write the pictures').waitFor();
+        assert.equal(await redColumns(), before);
+        await page.close();
+    });
 });
 
 describe('the JSON Schema of scenes', () => {

@@ -76,6 +76,7 @@ export class Surface {
         const style = this.viewer.style(), factor = height / this.canvas.height;
         this.isHeld = true;
         this.canvas.style.pointerEvents = 'none'; // the view stays as it is
+        this.canvas.style.objectFit = 'contain'; // and is shown with its own sides
         try {
             this.resize(width, height);
             const { drawingBufferWidth, drawingBufferHeight } = this.canvas.getContext('webgl2')!;
@@ -92,7 +93,7 @@ export class Surface {
             return await work();
         } finally {
             this.viewer.setStyle(style);
-            this.canvas.style.pointerEvents = '';
+            this.canvas.style.pointerEvents = this.canvas.style.objectFit = '';
             this.isHeld = false;
             this.fill(frames);
         }
@@ -106,8 +107,10 @@ export class Surface {
 
     /** Where world positions are in the picture; null for what is behind the camera. */
     project(positions: Vector[]): ({ x: number; y: number } | null)[] {
-        const ratio = this.pixelRatio;
-        return this.viewer.project(positions).map((at) => at && { x: at[0] / ratio, y: at[1] / ratio });
+        const { width, height, clientWidth, clientHeight } = this.canvas;
+        const ratio = this.isHeld ? Math.max(width / clientWidth, height / clientHeight) : this.pixelRatio;
+        const [left, top] = this.isHeld ? [(clientWidth - width / ratio) / 2, (clientHeight - height / ratio) / 2] : [0, 0];
+        return this.viewer.project(positions).map((at) => at && { x: left + at[0] / ratio, y: top + at[1] / ratio });
     }
 
     /** The picture as it is, drawn once more: rows from the top, four bytes a pixel. */

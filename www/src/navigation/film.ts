@@ -4,7 +4,7 @@ import type { Keyframe } from '../wasm/values.ts';
 
 const defaultSeconds = 2;
 export const mostKeyframes = 1000;
-/** A sequence of more pictures would not fit into a page's memory. */
+/** More pictures are a matter for `stipple render`. */
 const mostFrames = 20_000;
 
 export interface FrameExport {
@@ -95,10 +95,10 @@ export class Film extends EventTarget {
         const frames = Math.floor(this.duration * framesPerSecond + 1e-9) + 1;
         if (!(framesPerSecond > 0) || frames > mostFrames) throw new Problem('film.tooMany', { most: mostFrames });
         const { Zip, ZipPassThrough } = await import('fflate');
-        const { surface, camera } = this.model, before = camera.read(), parts: Uint8Array<ArrayBuffer>[] = [];
+        const { surface, camera } = this.model, before = camera.read(), parts: Blob[] = [];
         const zip = new Zip((error, chunk) => {
             if (error) throw error;
-            parts.push(new Uint8Array(chunk));
+            parts.push(new Blob([new Uint8Array(chunk)])); // which browsers keep on the disk, where they are many
         });
         this.stop();
         const run = this.run;
