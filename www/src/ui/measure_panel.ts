@@ -1,6 +1,6 @@
 import { css, html, type TemplateResult } from 'lit';
 
-import { exportFormats, exportText, type ExportFormat, type LonLats } from '../measuring/exports.ts';
+import { exportFormats, type ExportFormat, type LonLats } from '../measuring/export_formats.ts';
 import { kindOf, kindsOfMeasurement, type Measurement } from '../measuring/measurement.ts';
 import type { Measuring } from '../measuring/measuring.ts';
 import { resultLines } from '../measuring/results.ts';
@@ -148,7 +148,7 @@ export class MeasurePanel extends ModelElement {
                       <div class="files">
                           ${exportFormats.map(
                               ({ format, label }) =>
-                                  html`<button @click=${() => void this.save(format)}>${label}</button>`,
+                                  html`<button @click=${() => this.save(format).catch((error: unknown) => this.model.tell(error))}>${label}</button>`,
                           )}
                       </div>`
                 : ''}
@@ -300,7 +300,7 @@ export class MeasurePanel extends ModelElement {
 
     private async save(format: ExportFormat): Promise<void> {
         const { type } = exportFormats.find((known) => known.format === format)!;
-        const { items } = this.measuring;
+        const { items } = this.measuring, { exportText } = await import('../measuring/exports.ts'); // loaded when it is first wanted
         const lonLats = format === 'geojson' ? await this.lonLatsOf(items) : undefined;
         if (format === 'geojson' && !lonLats) this.model.notify(this.text('measure.noLonLat'));
         download(new Blob([exportText(items, format, lonLats)], { type }), `measurements.${format}`);
