@@ -1,5 +1,6 @@
 // Two viewers on a page, made, drawn and disposed of, again and again: what is left of memory.
-//   node tests/e2e/measure_disposal.mjs [ROUNDS]      after scripts/build_web.sh and scripts/build_package.sh; 100 rounds unless told
+//   node tests/e2e/measure_disposal.mjs [ROUNDS] [--plain]      after scripts/build_web.sh and scripts/build_package.sh; 100 rounds unless told
+// --plain: two bare WebGL contexts instead, with as many bytes in buffers and a framebuffer, given back likewise: what the browser itself keeps.
 // Prints the page's JavaScript heap (collected) and the resident memory of the page's and the GPU's process. The page runs by
 // itself and tells in its title how far it is: a debugger that listens to the network keeps what came of it.
 import { spawn } from 'node:child_process';
@@ -10,9 +11,57 @@ import { join } from 'node:path';
 import { executable, flags } from './support/browser.mjs';
 import { installPackage } from './support/embedding.mjs';
 
-const rounds = Number(process.argv[2] ?? 100);
+const rounds = Number(process.argv[2] ?? 100), isPlain = process.argv.includes('--plain');
 
-const script = `
+/** As the viewers draw: points from a buffer into a framebuffer with depth, then onto the canvas. */
+const plain = `
+const row = document.querySelector('.row');
+for (let round = 1; round <= ${rounds}; round++) {
+    const contexts = [60_000, 30_000].map((points) => {
+        const canvas = document.createElement('canvas');
+        Object.assign(canvas, { width: 420, height: 300 });
+        row.append(canvas);
+        const gl = canvas.getContext('webgl2', { antialias: false });
+        const shader = (kind, text) => {
+            const made = gl.createShader(kind);
+            gl.shaderSource(made, '#version 300 es\\nprecision highp float;' + text);
+            gl.compileShader(made);
+            return made;
+        };
+        const program = gl.createProgram();
+        gl.attachShader(program, shader(gl.VERTEX_SHADER, 'in vec3 p; void main() { gl_Position = vec4(p, 1); gl_PointSize = 2.0; }'));
+        gl.attachShader(program, shader(gl.FRAGMENT_SHADER, 'out vec4 c; void main() { c = vec4(1); }'));
+        gl.linkProgram(program);
+        gl.useProgram(program);
+        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from({ length: 4 * points }, () => Math.random() - 0.5), gl.STATIC_DRAW);
+        gl.enableVertexAttribArray(0);
+        gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 16, 0);
+        const texture = (format) => {
+            const made = gl.createTexture();
+            gl.bindTexture(gl.TEXTURE_2D, made);
+            gl.texStorage2D(gl.TEXTURE_2D, 1, format, 420, 300);
+            return made;
+        };
+        const frame = gl.createFramebuffer();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture(gl.RGBA8), 0);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture(gl.DEPTH_COMPONENT24), 0);
+        gl.drawArrays(gl.POINTS, 0, points);
+        gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+        gl.blitFramebuffer(0, 0, 420, 300, 0, 0, 420, 300, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+        if (gl.getError() !== 0) throw new Error('WebGL refuses');
+        return gl;
+    });
+    for (let i = 0; i < 3; i++) await new Promise(requestAnimationFrame);
+    for (const gl of contexts) gl.getExtension('WEBGL_lose_context').loseContext();
+    row.replaceChildren();
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    gc();
+    document.title = round + ' ' + (performance.memory.usedJSHeapSize / 1e6).toFixed(2);
+}`;
+
+const script = isPlain ? plain : `
 await customElements.whenDefined('stipple-viewer');
 const row = document.querySelector('.row');
 for (let round = 1; round <= ${rounds}; round++) {
