@@ -13,11 +13,12 @@
 #include "shared/format/cloud_file.hpp"
 #include "shared/io/file_source.hpp"
 #include "tests/bench/streaming_run.hpp"
+#include "tests/bench/streaming_ways.hpp"
 
 #include <cstdio>
-#include <cstdlib>
-#include <fstream>
-#include <iterator>
+#include <optional>
+#include <string>
+#include <vector>
 
 using namespace stipple;
 using namespace stipple::test;
@@ -38,72 +39,6 @@ struct Options {
     std::vector<double> at; // seconds
     std::string pictures;
 };
-
-template <class T>
-T need(Result<T> result) {
-    if (!result.ok()) {
-        std::fprintf(stderr, "streaming_bench: %s\n", result.error().sentence().c_str());
-        std::exit(1);
-    }
-    return std::move(*result);
-}
-
-void need(const Status& status) {
-    if (!status.ok()) {
-        std::fprintf(stderr, "streaming_bench: %s\n", status.error().sentence().c_str());
-        std::exit(1);
-    }
-}
-
-// Everything on; everything off; and everything on but one.
-std::vector<StreamingWay> allWays(std::uint64_t budget, double spacing) {
-    StreamingWay all{"all", {}, {}};
-    all.limits.pointBudget = budget;
-    all.limits.cacheBytes = 2ull << 30;
-    all.style.detail.mode = DetailMode::continuous;
-    all.style.detail.spacingPixels = spacing;
-    std::vector<StreamingWay> ways{all};
-    auto without = [&](const char* name, const auto& change) {
-        ways.push_back(all);
-        ways.back().name = name;
-        change(ways.back());
-    };
-    without("plain", [](StreamingWay& way) {
-        way.style.detail.mode = DetailMode::discrete;
-        way.limits.techniques = {false, false, false, false};
-        way.limits.skips.unused = false;
-        way.style.growsWhileLoading = false;
-    });
-    without("no growing", [](StreamingWay& way) { way.style.growsWhileLoading = false; });
-    without("levels", [](StreamingWay& way) { way.style.detail.mode = DetailMode::discrete; });
-    without("whole nodes", [](StreamingWay& way) { way.limits.techniques.prefixes = false; });
-    without("all attributes", [](StreamingWay& way) { way.limits.skips.unused = false; });
-    without("no merging", [](StreamingWay& way) { way.limits.techniques.merging = false; });
-    without("no order by value", [](StreamingWay& way) { way.limits.techniques.byValue = false; });
-    without("fixed limits", [](StreamingWay& way) { way.limits.techniques.adaptive = false; });
-    return ways;
-}
-
-NetworkOptions networkOf(const std::string& text, int connections) {
-    double megabits = 0, milliseconds = 0;
-    int read = 0;
-    if (std::sscanf(text.c_str(), "%lfx%lf%n", &megabits, &milliseconds, &read) != 2 ||
-        static_cast<std::size_t>(read) != text.size() || megabits <= 0 || milliseconds < 0)
-        need(Result<int>(
-            Error{ErrorCode::invalidArgument, "a network is MBITxMS, for example 50x20", text, ""}));
-    NetworkOptions options;
-    options.megabitsPerSecond = megabits;
-    options.roundTrip = std::chrono::nanoseconds(static_cast<std::int64_t>(milliseconds * 1e6));
-    options.connections = connections;
-    return options;
-}
-
-std::shared_ptr<const HostedFile> hosted(const std::string& path) {
-    std::ifstream stream(path, std::ios::binary);
-    auto file = std::make_shared<HostedFile>();
-    file->bytes.assign(std::istreambuf_iterator<char>(stream), {});
-    return file;
-}
 
 std::vector<StreamingScene> scenesOf(const std::string& path, const Options& options) {
     auto source = need(openFileSource(path));
@@ -145,9 +80,7 @@ void measure(const std::string& path, const Options& options) {
     std::vector<StreamingScene> scenes = scenesOf(path, options);
     std::string cloud = path.substr(path.find_last_of('/') + 1);
     for (const std::string& network : options.networks)
-        for (const StreamingWay& way : allWays(options.budget, options.spacing)) {
-            if (std::find(options.ways.begin(), options.ways.end(), way.name) == options.ways.end())
-                continue;
+        for (const StreamingWay& way : streamingWays(options.ways, options.budget, options.spacing)) {
             std::optional<StreamingResult> sum;
             for (const StreamingScene& scene : scenes) {
                 StreamingResult result =
