@@ -41,7 +41,8 @@ LoadLimits adaptedLimits(const LoadLimits& most, const TransferEstimate& estimat
         within(static_cast<double>(fitted.bytes) / requests, leastRequestBytes, most.mergedRequestBytes);
     fitted.mergeGapBytes = within(held / requests / 4, leastGapBytes, most.mergeGapBytes);
     fitted.pieceBytes = within(2 * held / requests, leastPieceBytes, most.mergedRequestBytes);
-    fitted.letFinishBytes = within(held, leastLetFinishBytes, most.bytes);
+    fitted.letsUnbegunFinish = true;
+    fitted.letFinishBytes = within(3 * held, leastLetFinishBytes, most.bytes);
     return fitted;
 }
 

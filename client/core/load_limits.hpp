@@ -19,7 +19,8 @@ struct LoadLimits {
     // A request that nothing needs any more is let finish if no more than this, or than half of it, is
     // missing.
     std::uint64_t letFinishBytes = 16 << 10;
-    std::uint64_t pipeBytes = 0; // what the network holds, as far as is known; 0: it isn't
+    bool letsUnbegunFinish = false; // also one of which nothing has come yet
+    std::uint64_t pipeBytes = 0;    // what the network holds, as far as is known; 0: it isn't
 };
 
 // Before anything was measured, and where a source answers at once: `most`, but no more than what is safe on
@@ -29,13 +30,15 @@ LoadLimits unmeasuredLimits(const LoadLimits& most);
 // Fitted to the network, within `most`. With bandwidth B, delay d and the product B d (what the network
 // holds):
 //
-//   bytes               2 B (d + 0.1 s): the pipe is full, also while the next is being chosen, and what is
-//   on
-//                       its way is at most 0.2 s + 2 d old when it comes, so that a new view is soon served
-//   mergedRequestBytes  that, over all connections
-//   mergeGapBytes       half of what a connection could carry while a request of its own travels: B d /
-//   requests / 4 pieceBytes          so much that a connection is busy for two thirds of the time: 2 B d /
-//   requests letFinishBytes      B d: what would come in the time in which a new connection is made
+// * bytes, 2 B (d + 0.1 s): the pipe is full, also while the next is being chosen, and what is on its way is
+//   at most 0.2 s + 2 d old when it comes, so that a new view is soon served
+// * mergedRequestBytes, that over all connections
+// * mergeGapBytes, B d / requests / 4: half of what a connection could carry while a request of its own
+//   travels
+// * pieceBytes, 2 B d / requests: so much that a connection is busy for two thirds of the time
+// * letFinishBytes, 3 B d, begun or not: what would come in the time in which a new connection is made and
+//   asked. A camera that moves faster than answers come would never see one if all were cancelled; what is
+//   let finish is coarse at first, and of use elsewhere (flight_bench, docs/MEASUREMENTS.md)
 //
 // What was measured is the network's bandwidth only if enough was on its way to fill it. While little was
 // measured, and where requests come back about as soon as the delay allows (`isPipeShort`), it is taken to be

@@ -126,7 +126,9 @@ bool LoadQueue::isNearlyHere(const Request& request) const {
         return false;
     ByteSource::Progress progress = source->second.bytes->progress(request.id);
     bool isHalfHere = progress.bytes >= request.range.size - progress.bytes;
-    return progress.hasBegun && (isHalfHere || progress.bytes + letFinishBytes_ >= request.range.size);
+    bool isShort = progress.bytes + letFinishBytes_ >= request.range.size;
+    bool isRegion = request.items.front().key.kind == LoadKind::region; // of a scan that was ended
+    return (progress.hasBegun && (isHalfHere || isShort)) || (letsUnbegunFinish_ && isShort && !isRegion);
 }
 
 LoadQueue::Clock::time_point LoadQueue::notBefore(const LoadItem& item) const {
@@ -166,6 +168,7 @@ void LoadQueue::lookAtProgress(Clock::time_point now) {
 void LoadQueue::start(const LoadLimits& limits, std::uint64_t bytesHeld, Clock::time_point now) {
     lookAtProgress(now);
     letFinishBytes_ = limits.letFinishBytes;
+    letsUnbegunFinish_ = limits.letsUnbegunFinish;
     int mostRequests = std::max(1, limits.requests);
     if (waiting_.empty() || requestsInFlight_ >= mostRequests)
         return;

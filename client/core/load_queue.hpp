@@ -121,6 +121,7 @@ class LoadQueue {
     std::shared_ptr<LoadQueue*> self_;
     std::uint64_t lastRequest_ = 0, reading_ = 0; // reading_: the request whose read() is running
     std::uint64_t letFinishBytes_ = LoadLimits{}.letFinishBytes;
+    bool letsUnbegunFinish_ = false;
     bool isPipeShort_ = false; // so many requests hold no more than the network does
     int requestsInFlight_ = 0;
     std::uint64_t bytesInFlight_ = 0;
