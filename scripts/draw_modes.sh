@@ -57,4 +57,6 @@ b|filter|{"filters": [{"attribute": "Return Number", "min": 2}]}|
 b|clip_highlight|{"clipBoxes": [{"mode": "highlight", "centre": [484850, 6632760, 110], "halfSize": [50, 30, 20], "rotation": [0, 0, 0.3827, 0.9239]}]}|
 b|clip_outside|{"clipBoxes": [{"mode": "hideOutside", "centre": [484850, 6632760, 110], "halfSize": [50, 30, 20], "rotation": [0, 0, 0.3827, 0.9239]}]}|
 b|clip_inside|{"clipBoxes": [{"mode": "hideInside", "centre": [484850, 6632760, 110], "halfSize": [50, 30, 20], "rotation": [0, 0, 0.3827, 0.9239]}]}|
+b|clip_polygon|{"clipRegions": [{"mode": "hideOutside", "region": {"polygon": [[484770, 6632700], [484890, 6632760], [484930, 6632850], [484860, 6632850], [484850, 6632790], [484770, 6632800]], "holes": [[[484860, 6632770], [484885, 6632785], [484895, 6632825], [484870, 6632820]]], "heights": [null, 125]}}]}|
+b|clip_corridor|{"clipRegions": [{"mode": "highlight", "region": {"line": [[484780, 6632730], [484850, 6632760], [484910, 6632850]], "width": 14}}]}|
 LIST

@@ -1,6 +1,6 @@
 #include "client/core/cloud_needs.hpp"
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
 #include "client/core/node_normals.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ std::uint32_t bytesPerPoint(const CloudLoader& cloud, const Style& style) {
     const CloudMetadata& metadata = *cloud.opened.metadata;
     bool wide = metadata.rootCube.bits > positionWordBits;
     bool painted = style.colourMode != ColourMode::rgb || cloud.needs.exactBlock >= 0 ||
-                   !style.clipBoxes.empty() || hidesPoints(style);
+                   !style.clipBoxes.empty() || !style.clipRegions.empty() || hidesPoints(style);
     bool oriented = style.shape == PointShape::disc && normalAttributes(metadata.schema);
     return 12u + (wide ? 4u : 0u) + (painted ? 4u : 0u) + (oriented ? 4u : 0u) +
            columnBytes(cloud.needs, metadata) + (cloud.needs.exactBlock >= 0 ? 4u : 0u);

@@ -1,6 +1,7 @@
 #include "client/core/colour_json.hpp"
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
+#include "client/core/region_json.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -132,10 +133,36 @@ Status readClipBox(const json& item, const std::string& path, ColourStyle& style
     if (item.is_object())
         readTurn(fields, item, box);
     STIPPLE_CHECK(fields.finish());
-    auto usable = ClipBoxes::make({&box, 1});
+    auto usable = Clips::make({&box, 1});
     if (!usable.ok())
         return usable.error().at(path);
     style.clipBoxes.push_back(box);
+    return {};
+}
+
+Status readClipRegion(const json& item, const std::string& path, ColourStyle& style) {
+    ClipRegion clip;
+    FieldReader fields(item, path);
+    fields.choice("mode", clip.mode, clipModes);
+    fields.allow("region");
+    STIPPLE_CHECK(fields.finish());
+    if (auto region = item.find("region"); region != item.end()) {
+        STIPPLE_TRY(shape, shapeFromJson(*region, path + ".region"));
+        clip.shape = std::move(shape);
+    }
+    if (clip.shape.isEverywhere())
+        return Error{ErrorCode::invalidArgument,
+                     "'region' must be given, with a polygon, line, prism, box or heights", path, ""};
+    std::size_t corners = clip.shape.cornerCount();
+    for (const ClipRegion& other : style.clipRegions)
+        corners += other.shape.cornerCount();
+    if (corners > maxClipCorners)
+        return Error{ErrorCode::limitExceeded,
+                     cat("clip regions may have ", maxClipCorners, " corners together"), path,
+                     "simplify the polygons, or export what lies in them"};
+    if (auto usable = filterOf(clip.shape); !usable)
+        return inRegion(path + ".region", usable.error());
+    style.clipRegions.push_back(std::move(clip));
     return {};
 }
 
@@ -176,6 +203,7 @@ void readColours(FieldReader& fields, ColourStyle& style) {
     readList(fields, "hiddenClasses", 256, style, &ColourStyle::hiddenClasses, readClass);
     readList(fields, "filters", maxAttributeFilters, style, &ColourStyle::filters, readFilter);
     readList(fields, "clipBoxes", maxClipBoxes, style, &ColourStyle::clipBoxes, readClipBox);
+    readList(fields, "clipRegions", maxClipRegions, style, &ColourStyle::clipRegions, readClipRegion);
     fields.bytes("highlight", style.highlight);
     if (style.colourMode == ColourMode::attribute && style.attribute.empty())
         fields.fail("attribute", "must name the attribute that colours the points");
@@ -184,7 +212,8 @@ void readColours(FieldReader& fields, ColourStyle& style) {
 }
 
 json coloursJson(const ColourStyle& style) {
-    json mix = json::array(), classes = json::array(), filters = json::array(), boxes = json::array();
+    json mix = json::array(), classes = json::array(), filters = json::array(), boxes = json::array(),
+         regions = json::array();
     for (const MixedColour& one : style.mix)
         mix.push_back({{"colourMode", nameOf(colourModes, one.mode)},
                        {"attribute", one.attribute},
@@ -199,6 +228,8 @@ json coloursJson(const ColourStyle& style) {
                            {"max", limitJson(filter.max)}});
     for (const ClipBox& box : style.clipBoxes)
         boxes.push_back(clipBoxJson(box));
+    for (const ClipRegion& clip : style.clipRegions)
+        regions.push_back({{"mode", nameOf(clipModes, clip.mode)}, {"region", toJson(clip.shape)}});
     return {{"colourMode", nameOf(colourModes, style.colourMode)},
             {"gradient", nameOf(gradients, style.gradient)},
             {"intensityRange", rangeJson(style.intensityRange)},
@@ -210,6 +241,7 @@ json coloursJson(const ColourStyle& style) {
             {"hiddenClasses", std::move(classes)},
             {"filters", std::move(filters)},
             {"clipBoxes", std::move(boxes)},
+            {"clipRegions", std::move(regions)},
             {"highlight", style.highlight}};
 }
 

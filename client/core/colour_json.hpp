@@ -1,4 +1,4 @@
-// The colours, filters and clip boxes of a style as JSON, part of client/core/json.hpp:
+// The colours, filters and clips of a style as JSON, part of client/core/json.hpp:
 //
 //   {"colourMode": "classification", "gradient": "viridis",
 //    "intensityRange": [0, 4095], "elevationRange": null, "levelRange": null,
@@ -8,6 +8,7 @@
 //    "filters": [{"attribute": "Return Number", "min": 1, "max": 1}],
 //    "clipBoxes": [{"mode": "hideOutside", "centre": [0, 0, 0], "halfSize": [1, 1, 1],
 //                   "rotation": [0, 0, 0, 1]}],
+//    "clipRegions": [{"mode": "highlight", "region": {…as in client/core/region_json.hpp}}],
 //    "highlight": [255, 64, 0]}
 //
 // A limit of a filter that is null or absent is none. A box is turned by a quaternion x, y, z, w of any

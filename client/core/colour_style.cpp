@@ -32,9 +32,10 @@ std::string_view attributeOf(ColourMode mode, const std::string& attribute) {
 }
 
 bool hidesPoints(const ColourStyle& style) {
+    auto hides = [](const auto& clip) { return clip.mode != ClipMode::highlight; };
     return style.hiddenClasses.any() || !style.filters.empty() ||
-           std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(),
-                       [](const ClipBox& box) { return box.mode != ClipMode::highlight; });
+           std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(), hides) ||
+           std::any_of(style.clipRegions.begin(), style.clipRegions.end(), hides);
 }
 
 } // namespace stipple

@@ -4,6 +4,7 @@
 
 #include "shared/geometry/oriented_box.hpp"
 #include "shared/geometry/vec3.hpp"
+#include "shared/select/region_shape.hpp"
 
 #include <array>
 #include <bitset>
@@ -63,6 +64,14 @@ struct ClipBox {
     friend bool operator==(const ClipBox&, const ClipBox&) = default;
 };
 
+// What lies along a line, in a footprint, or behind a polygon on the screen; exactly, too
+// (shared/select/point_region.hpp).
+struct ClipRegion {
+    RegionShape shape;
+    ClipMode mode = ClipMode::hideOutside;
+    friend bool operator==(const ClipRegion&, const ClipRegion&) = default;
+};
+
 using ClassSet = std::bitset<256>;
 
 struct ColourStyle {
@@ -77,15 +86,17 @@ struct ColourStyle {
 
     ClassSet hiddenClasses; // points of these classes are hidden
     std::vector<AttributeFilter> filters;
-    // Hidden is what lies in a hideInside box, and, if there are hideOutside boxes, what lies in none of
-    // them. What lies in a highlight box is tinted.
+    // Hidden is what lies in one that is hideInside, and, if there are boxes or regions that are hideOutside,
+    // what lies in none of them. What lies in one that is highlight is tinted.
     std::vector<ClipBox> clipBoxes;
+    std::vector<ClipRegion> clipRegions;
     std::array<std::uint8_t, 3> highlight{255, 64, 0};
 
     friend bool operator==(const ColourStyle&, const ColourStyle&) = default;
 };
 
-inline constexpr std::size_t maxMixedColours = 16, maxAttributeFilters = 64, maxClipBoxes = 4096;
+inline constexpr std::size_t maxMixedColours = 16, maxAttributeFilters = 64, maxClipBoxes = 4096,
+                             maxClipRegions = 256, maxClipCorners = 10'000; // corners: of all together
 
 // The attribute that a mode shows; empty for those that show none (or several).
 std::string_view attributeOf(ColourMode mode, const std::string& attribute);

@@ -11,15 +11,15 @@ namespace {
 constexpr double slack = 1e-12;
 
 // A rectangle clipped by four planes has at most eight corners.
-struct Polygon {
+struct SpacePolygon {
     std::array<Vec3d, 8> corners;
     std::size_t count = 0;
     void add(Vec3d corner) { corners[std::min(count++, corners.size() - 1)] = corner; }
 };
 
 // The part on the side of the plane through the origin that `normal` points to.
-Polygon clipped(const Polygon& polygon, Vec3d normal) {
-    Polygon result;
+SpacePolygon clipped(const SpacePolygon& polygon, Vec3d normal) {
+    SpacePolygon result;
     for (std::size_t i = 0; i < polygon.count; ++i) {
         Vec3d from = polygon.corners[i], to = polygon.corners[(i + 1) % polygon.count];
         double a = dot(from, normal), b = dot(to, normal);
@@ -31,9 +31,9 @@ Polygon clipped(const Polygon& polygon, Vec3d normal) {
     return result;
 }
 
-Polygon faceOf(Vec3d low, Vec3d high, int axis, bool upper) {
+SpacePolygon faceOf(Vec3d low, Vec3d high, int axis, bool upper) {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    Polygon face;
+    SpacePolygon face;
     for (int corner : {0, 1, 3, 2}) { // around
         Vec3d at;
         at[axis] = upper ? high[axis] : low[axis];
@@ -130,7 +130,7 @@ double Frustum::nearestDistance(const BoxD& box, Sight sight) const {
         return 0;
     double nearest = HUGE_VAL;
     for (int face = 0; face < 6; ++face) {
-        Polygon part = faceOf(low, high, face / 2, face % 2);
+        SpacePolygon part = faceOf(low, high, face / 2, face % 2);
         for (std::size_t side = 0; side < sides && part.count > 0; ++side)
             part = clipped(part, axes_[side].direction);
         for (std::size_t i = 0; i < part.count; ++i)

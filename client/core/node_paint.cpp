@@ -247,7 +247,7 @@ void Painter::applyClips(const PaintedNode& node, Words& words) const {
             word &= colourMask;
     if (!verdict.tested && !verdict.highlighted)
         return;
-    ClipBoxes near = clips_.near(node.box);
+    Clips near = clips_.near(node.box);
     std::uint32_t tint = wordOf(style_.highlight);
     for (std::size_t i = 0; i < words.size(); ++i) {
         Vec3<std::uint32_t> p = positionOf(*node.node, i);

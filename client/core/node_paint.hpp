@@ -5,7 +5,7 @@
 // Pure; any thread.
 #pragma once
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
 #include "client/core/colour_style.hpp"
 #include "client/core/node_columns.hpp"
 #include "client/core/rank_density.hpp"
@@ -51,7 +51,7 @@ class Painter {
   public:
     // `style` is resolved (resolvedStyle()); all but `continuous` (detail: levels are of points, not of
     // nodes) are borrowed.
-    Painter(const ColourStyle& style, const ClipBoxes& clips, const Schema& schema, const Grid& grid,
+    Painter(const ColourStyle& style, const Clips& clips, const Schema& schema, const Grid& grid,
             bool colourIs8Bit, bool continuous)
         : style_(style), clips_(clips), schema_(schema), grid_(grid), colourIs8Bit_(colourIs8Bit),
           continuous_(continuous) {}
@@ -82,7 +82,7 @@ class Painter {
     bool changesPoints(const PaintedNode& node) const;
 
     const ColourStyle& style_;
-    const ClipBoxes& clips_;
+    const Clips& clips_;
     const Schema& schema_;
     const Grid& grid_;
     bool colourIs8Bit_, continuous_;

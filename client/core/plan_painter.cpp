@@ -15,8 +15,8 @@ void PlanPainter::setStyle(const Style& resolved) {
         return;
     ++number_;
     style_ = resolved;
-    Result<ClipBoxes> clips = ClipBoxes::make(style_.clipBoxes);
-    clips_ = clips.ok() ? std::move(*clips) : ClipBoxes();
+    Result<Clips> clips = Clips::make(style_.clipBoxes, style_.clipRegions);
+    clips_ = clips.ok() ? std::move(*clips) : Clips();
 }
 
 bool PlanPainter::paint(const CloudLoader& cloud, std::uint32_t node, bool exact, CachedNode& cached) {

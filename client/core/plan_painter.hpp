@@ -17,7 +17,7 @@ class PlanPainter {
   public:
     explicit PlanPainter(SessionCounters& counters) : counters_(counters) {} // outlives this
 
-    // The resolved style of the nodes that follow. A style whose boxes can't be computed with clips nothing;
+    // The resolved style of the nodes that follow. A style whose clips can't be computed with clips nothing;
     // ViewSession::setStyle takes none.
     void setStyle(const Style& resolved);
 
@@ -30,7 +30,7 @@ class PlanPainter {
   private:
     SessionCounters& counters_;
     Style style_;
-    ClipBoxes clips_;
+    Clips clips_;
     std::uint64_t number_ = 0;
 };
 

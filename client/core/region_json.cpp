@@ -1,10 +1,9 @@
 #include "client/core/region_json.hpp"
 
 #include "client/core/json_fields.hpp"
-#include "shared/geometry/oriented_box.hpp"
-#include "shared/select/region_options.hpp"
 
-#include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace stipple {
 
@@ -13,7 +12,7 @@ namespace {
 using json_fields::FieldReader;
 using nlohmann::json;
 
-constexpr double limit = 1e100;
+constexpr double limit = 1e100, infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t maxCorners = 100'000;
 
 Error wrong(const std::string& path, const std::string& what) {
@@ -31,54 +30,77 @@ Result<std::array<double, N>> numbersFrom(const json& value, const std::string& 
     return fits ? Result<std::array<double, N>>(numbers) : wrong(path, cat("must be ", N, " numbers"));
 }
 
-Status readPlaces(FieldReader& fields, const char* name, std::vector<Point2d>& places) {
-    fields.list(name, maxCorners, [&](const json& item, const std::string& path) -> Status {
-        STIPPLE_TRY(place, numbersFrom<2>(item, path));
-        places.push_back({place[0], place[1]});
-        return {};
-    });
+using Places = std::vector<Point2d>;
+
+Status addPlace(const json& item, const std::string& path, Places& places) {
+    STIPPLE_TRY(place, numbersFrom<2>(item, path));
+    places.push_back({place[0], place[1]});
     return {};
 }
 
-Status readBox(const json& value, const std::string& path, PointFilter& filter) {
+// Empty where the field is absent, and only there.
+Places readPlaces(FieldReader& fields, const char* name) {
+    Places places;
+    bool given = fields.list(name, maxCorners, [&](const json& item, const std::string& at) {
+        return addPlace(item, at, places);
+    });
+    if (given && places.empty())
+        fields.fail(name, "must not be empty");
+    return places;
+}
+
+void readRings(FieldReader& fields, RegionShape& shape) {
+    Places outer = readPlaces(fields, "polygon");
+    bool hasOuter = !outer.empty();
+    if (hasOuter)
+        shape.rings.push_back(std::move(outer));
+    bool given = fields.list("holes", maxCorners, [&](const json& hole, const std::string& path) -> Status {
+        if (!hole.is_array() || hole.size() > maxCorners)
+            return wrong(path, "must be a list of corners");
+        Places& ring = shape.rings.emplace_back();
+        for (std::size_t i = 0; i < hole.size(); ++i)
+            STIPPLE_CHECK(addPlace(hole[i], cat(path, "[", i, "]"), ring));
+        return {};
+    });
+    if (given && !hasOuter)
+        fields.fail("holes", "can't be given without a polygon");
+}
+
+// [low, high]; null: open.
+void readHeights(FieldReader& fields, const json& region, RegionShape& shape) {
+    fields.allow("heights");
+    auto found = region.find("heights");
+    if (found == region.end())
+        return;
+    std::array<double, 2> ends{-infinity, infinity};
+    bool fits = found->is_array() && found->size() == 2;
+    for (std::size_t i = 0; fits && i < 2; ++i) {
+        const json& end = (*found)[i];
+        fits = end.is_null() || (end.is_number() && std::abs(end.get<double>()) <= limit);
+        if (fits && !end.is_null())
+            ends[i] = end.get<double>();
+    }
+    if (!fits || ends[0] > ends[1])
+        return fields.fail("heights", "must be [low, high] with low <= high, null where open");
+    shape.heights = ValueRange{ends[0], ends[1]};
+}
+
+Result<RegionShape::Box> boxFromJson(const json& value, const std::string& path) {
     FieldReader fields(value, path);
-    Vec3d centre, halfSize{-1, -1, -1};
-    BoxAxes axes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    fields.vector("centre", centre, limit);
-    fields.vector("halfSize", halfSize, limit);
+    RegionShape::Box box{{}, {-1, -1, -1}};
+    fields.vector("centre", box.centre, limit);
+    fields.vector("halfSize", box.halfSize, limit);
     std::size_t count = 0;
     bool given = fields.list("axes", 3, [&](const json& item, const std::string& at) -> Status {
         STIPPLE_TRY(axis, numbersFrom<3>(item, at));
-        axes[count++] = {axis[0], axis[1], axis[2]};
+        box.axes[count++] = {axis[0], axis[1], axis[2]};
         return {};
     });
     STIPPLE_CHECK(fields.finish());
     if (given && count != 3)
         return wrong(path, "'axes' must be three vectors");
-    auto box = orientedBox(centre, halfSize * 2, axes, false);
-    if (!box)
-        return box.error().at(path);
-    filter.convex = std::make_shared<const ConvexRegion>(*std::move(box));
-    return {};
+    return box;
 }
-
-Status makePlan(PointFilter& filter, const std::vector<Point2d>& polygon, const std::vector<Point2d>& line,
-                double width, const std::string& path) {
-    if (!polygon.empty()) {
-        if (polygon.size() < 3)
-            return wrong(path, "'polygon' must have three corners at least");
-        filter.region = std::make_shared<const PolygonRegion>(std::vector<Polygon>{{Ring(polygon), {}}});
-    }
-    if (!line.empty()) {
-        auto corridor = Corridor::make(line, width);
-        if (!corridor)
-            return corridor.error().at(path);
-        filter.corridor = std::make_shared<const Corridor>(*std::move(corridor));
-    }
-    return {};
-}
-
-} // namespace
 
 Result<ScreenPolygon> screenPolygonFromJson(const json& value, const std::string& path) {
     ScreenPolygon polygon;
@@ -100,46 +122,85 @@ Result<ScreenPolygon> screenPolygonFromJson(const json& value, const std::string
     return polygon;
 }
 
+json vectorJson(Vec3d v) {
+    return json{v.x, v.y, v.z};
+}
+json placesJson(const Places& places) {
+    json list = json::array();
+    for (Point2d place : places)
+        list.push_back({place.x, place.y});
+    return list;
+}
+json endJson(double end) {
+    return std::isfinite(end) ? json(end) : json(nullptr);
+}
+
+} // namespace
+
 json toJson(const ScreenPolygon& polygon) {
-    auto list = [](Vec3d v) { return json{v.x, v.y, v.z}; };
     json corners = json::array();
     for (Vec3d corner : polygon.corners)
-        corners.push_back(list(corner));
-    return {{"eye", polygon.eye ? list(*polygon.eye) : json(nullptr)},
-            {"forward", list(polygon.forward)},
+        corners.push_back(vectorJson(corner));
+    return {{"eye", polygon.eye ? vectorJson(*polygon.eye) : json(nullptr)},
+            {"forward", vectorJson(polygon.forward)},
             {"corners", std::move(corners)}};
 }
 
-Result<PointFilter> regionFromJson(const json& region, const std::string& path) {
-    PointFilter filter;
+json toJson(const RegionShape& shape) {
+    json region = json::object();
+    if (const auto& box = shape.box)
+        region["box"] = {{"centre", vectorJson(box->centre)},
+                         {"halfSize", vectorJson(box->halfSize)},
+                         {"axes", json::array({vectorJson(box->axes[0]), vectorJson(box->axes[1]),
+                                               vectorJson(box->axes[2])})}};
+    if (!shape.rings.empty())
+        region["polygon"] = placesJson(shape.rings[0]);
+    for (std::size_t hole = 1; hole < shape.rings.size(); ++hole)
+        region["holes"].push_back(placesJson(shape.rings[hole]));
+    if (!shape.line.empty()) {
+        region["line"] = placesJson(shape.line);
+        region["width"] = shape.width;
+    }
+    if (shape.prism)
+        region["prism"] = toJson(*shape.prism);
+    if (shape.heights)
+        region["heights"] = json::array({endJson(shape.heights->min), endJson(shape.heights->max)});
+    return region;
+}
+
+Result<RegionShape> shapeFromJson(const json& region, const std::string& path) {
+    RegionShape shape;
     FieldReader fields(region, path);
     if (!region.is_object())
         return fields.finish().error();
-    std::vector<Point2d> polygon, line;
-    double width = 0;
-    std::array<double, 2> heights{};
-    STIPPLE_CHECK(readPlaces(fields, "polygon", polygon));
-    STIPPLE_CHECK(readPlaces(fields, "line", line));
-    fields.number("width", width, 0, limit);
-    if (fields.numbersOf("heights", heights, limit)) {
-        if (heights[0] > heights[1])
-            return wrong(path, "'heights' must be [low, high] with low <= high");
-        limitHeights(filter, {heights[0], heights[1]});
-    }
+    readRings(fields, shape);
+    shape.line = readPlaces(fields, "line");
+    fields.number("width", shape.width, 0, limit);
+    readHeights(fields, region, shape);
     fields.allow("box");
     fields.allow("prism");
     STIPPLE_CHECK(fields.finish());
-    if (auto box = region.find("box"); box != region.end())
-        STIPPLE_CHECK(readBox(*box, path + ".box", filter));
-    if (auto prism = region.find("prism"); prism != region.end()) {
-        STIPPLE_TRY(screen, screenPolygonFromJson(*prism, path + ".prism"));
-        auto made = ScreenPrism::make(screen);
-        if (!made)
-            return made.error().at(path + ".prism");
-        filter.prism = std::make_shared<const ScreenPrism>(*std::move(made));
+    if (auto box = region.find("box"); box != region.end()) {
+        STIPPLE_TRY(read, boxFromJson(*box, path + ".box"));
+        shape.box = read;
     }
-    STIPPLE_CHECK(makePlan(filter, polygon, line, width, path));
-    return filter;
+    if (auto prism = region.find("prism"); prism != region.end()) {
+        STIPPLE_TRY(read, screenPolygonFromJson(*prism, path + ".prism"));
+        shape.prism = std::move(read);
+    }
+    return shape;
+}
+
+Error inRegion(const std::string& path, const Error& error) {
+    Error placed = error;
+    placed.where = error.where.empty() ? path : path + "." + error.where;
+    return placed;
+}
+
+Result<PointFilter> regionFromJson(const json& region, const std::string& path) {
+    STIPPLE_TRY(shape, shapeFromJson(region, path));
+    auto filter = filterOf(shape);
+    return filter ? std::move(filter) : Result<PointFilter>(inRegion(path, filter.error()));
 }
 
 } // namespace stipple

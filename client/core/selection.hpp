@@ -18,7 +18,7 @@
 // rasterizer.
 #pragma once
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
 #include "client/core/counters.hpp"
 #include "client/core/frame_plan.hpp"
 #include "client/core/hierarchy.hpp"
@@ -48,9 +48,9 @@ struct SelectionInput {
     std::span<const SelectionCloud> clouds;
     std::uint64_t pointBudget = 0;
     std::uint64_t byteBudget = 0;
-    const ClipBoxes* clips = nullptr; // null: nothing is clipped away
-    double minNodePixels = 0;         // discrete detail; the root of a cloud is wanted at any size
-    PriorityWeights weights;          // discrete detail
+    const Clips* clips = nullptr; // null: nothing is clipped away
+    double minNodePixels = 0;     // discrete detail; the root of a cloud is wanted at any size
+    PriorityWeights weights;      // discrete detail
     double detailPixels =
         0; // continuous detail with this target spacing (continuous_detail.hpp); 0: discrete
     Skips skips;

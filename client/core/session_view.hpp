@@ -1,7 +1,7 @@
 // What a session looks at, and what the selection made of it: what choosing, asking and planning share.
 #pragma once
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
 #include "client/core/cloud_loader.hpp"
 #include "client/core/node_cache.hpp"
 #include "client/core/selection.hpp"
@@ -19,7 +19,7 @@ struct SessionView {
     Camera camera;
     int width = 1280, height = 720; // pixels
     Style style;
-    ClipBoxes clips; // of the style
+    Clips clips; // of the style
     ViewTransform transform;
     Selection selection;
     std::vector<CloudId> clouds; // of the selection's cloud indices

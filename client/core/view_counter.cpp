@@ -85,7 +85,7 @@ std::vector<char> ViewCounter::inView(const CountedNode& node) const {
     std::vector<char> visible(node.points, none ? 0 : 1);
     if (none || (sight == Sight::inside && !verdict.tested))
         return visible;
-    ClipBoxes near = view_.clips.near(node.box);
+    Clips near = view_.clips.near(node.box);
     bool perspective = view_.view.projection == Projection::perspective;
     for (std::size_t i = 0; i < visible.size(); ++i) {
         Vec3d world = worldOf(node, i);

@@ -5,7 +5,7 @@
 //
 //   in view    0 <= x < width, 0 <= y < height of projectToPixels(grid.toWorld(integers)), in front of the
 //   camera,
-//              and not hidden by clip boxes
+//              and not hidden by clips
 //   counted    in view, and passed by every filter and hidden class of the style but those on the attribute
 //   itself:
 //              so the handles of a filter stand over all that it could show
@@ -19,7 +19,7 @@
 // Pure; any thread.
 #pragma once
 
-#include "client/core/clip_boxes.hpp"
+#include "client/core/clips.hpp"
 #include "client/core/colour_style.hpp"
 #include "client/core/frame_plan.hpp"
 #include "client/core/node_columns.hpp"
@@ -82,7 +82,7 @@ struct CountedView {
     ViewTransform view;
     int width = 0, height = 0;
     ColourStyle style;
-    ClipBoxes clips;
+    Clips clips;
     std::vector<CountedNode> nodes;
 };
 

@@ -75,8 +75,10 @@ class Session final : public ViewSession {
     }
     const Camera& camera() const override { return view_.camera; }
     void setStyle(const Style& style) override {
-        Result<ClipBoxes> clips = ClipBoxes::make(style.clipBoxes);
-        if (style == view_.style || !clips.ok())
+        if (style == view_.style)
+            return;
+        Result<Clips> clips = Clips::make(style.clipBoxes, style.clipRegions);
+        if (!clips.ok())
             return;
         (loadsAlike(style, view_.style) ? planDirty_ : dirty_) = true;
         view_.style = style;

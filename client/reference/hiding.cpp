@@ -1,6 +1,7 @@
 // Which points a style hides or tints, in arithmetic of its own: long double, from the definitions in
 // client/core/colour_style.hpp.
 #include "client/reference/marks.hpp"
+#include "client/reference/shape.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,26 +9,21 @@
 namespace stipple::reference {
 namespace {
 
-bool isInside(const ClipBox& box, const Vec3l& world) {
-    std::array<long double, 3> half{box.halfSize.x, box.halfSize.y, box.halfSize.z};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Vec3d& direction = box.axes[axis];
-        long double along = (world.x - box.centre.x) * direction.x + (world.y - box.centre.y) * direction.y +
-                            (world.z - box.centre.z) * direction.z;
-        if (std::abs(along) > half[axis])
-            return false;
-    }
-    return true;
-}
-
 bool isInAny(const Style& style, ClipMode mode, const Vec3l& world) {
-    return std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(),
-                       [&](const ClipBox& box) { return box.mode == mode && isInside(box, world); });
+    auto holds = [&](const ClipBox& box) {
+        return box.mode == mode && isInBox({box.centre, box.halfSize, box.axes}, world);
+    };
+    auto holdsRegion = [&](const ClipRegion& clip) {
+        return clip.mode == mode && isInShape(clip.shape, world);
+    };
+    return std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(), holds) ||
+           std::any_of(style.clipRegions.begin(), style.clipRegions.end(), holdsRegion);
 }
 
 bool hasAny(const Style& style, ClipMode mode) {
-    return std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(),
-                       [&](const ClipBox& box) { return box.mode == mode; });
+    auto isOf = [&](const auto& clip) { return clip.mode == mode; };
+    return std::any_of(style.clipBoxes.begin(), style.clipBoxes.end(), isOf) ||
+           std::any_of(style.clipRegions.begin(), style.clipRegions.end(), isOf);
 }
 
 bool isWithin(const AttributeFilter& filter, const Attribute& attribute, double value) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace stipple {
@@ -35,7 +36,7 @@ Place placeOf(const Indices& left, std::size_t at) {
     return {left[(at + n - 1) % n], left[at], left[(at + 1) % n]};
 }
 
-bool isEar(PlanPolygon corners, const Indices& left, Place place) {
+bool isEarAmong(PlanPolygon corners, const Indices& left, Place place) {
     Point2d a = corners[place.before], b = corners[place.here], c = corners[place.after];
     return orientation(a, b, c) > 0 && std::none_of(left.begin(), left.end(), [&](std::size_t other) {
                return other != place.before && other != place.here && other != place.after &&
@@ -43,16 +44,36 @@ bool isEar(PlanPolygon corners, const Indices& left, Place place) {
            });
 }
 
+// Whether corners are ears, as far as it was asked: cutting one off changes what its neighbours are, and no
+// other.
+class Ears {
+  public:
+    explicit Ears(PlanPolygon corners) : corners_(corners), known_(corners.size(), unknown) {}
+
+    bool isEar(const Indices& left, Place place) {
+        std::uint8_t& known = known_[place.here];
+        if (known == unknown)
+            known = isEarAmong(corners_, left, place) ? yes : no;
+        return known == yes;
+    }
+    void cut(Place place) { known_[place.before] = known_[place.after] = unknown; }
+
+  private:
+    static constexpr std::uint8_t unknown = 0, no = 1, yes = 2;
+    PlanPolygon corners_;
+    std::vector<std::uint8_t> known_;
+};
+
 // The place in `left` of the ear whose new edge is shortest, or else of a corner on a straight edge; its size
 // if there is neither.
-std::size_t nextToCut(PlanPolygon corners, const Indices& left) {
+std::size_t nextToCut(PlanPolygon corners, const Indices& left, Ears& ears) {
     std::size_t best = left.size();
     double shortest = 0;
     for (std::size_t at = 0; at < left.size(); ++at) {
         Place place = placeOf(left, at);
         Point2d a = corners[place.before], c = corners[place.after];
         double edge = std::hypot(c.x - a.x, c.y - a.y);
-        if ((best == left.size() || edge < shortest) && isEar(corners, left, place)) {
+        if ((best == left.size() || edge < shortest) && ears.isEar(left, place)) {
             best = at;
             shortest = edge;
         }
@@ -132,13 +153,15 @@ Result<std::vector<Triangle>> triangulate(PlanPolygon corners) {
     if (area < 0)
         std::reverse(left.begin(), left.end());
     std::vector<Triangle> triangles;
+    Ears ears(corners);
     while (left.size() > 2) {
-        std::size_t at = nextToCut(corners, left);
+        std::size_t at = nextToCut(corners, left, ears);
         if (at == left.size())
             return noPolygon("the polygon's edges touch");
         Place place = placeOf(left, at);
         if (orientation(corners[place.before], corners[place.here], corners[place.after]) > 0)
             triangles.push_back({place.before, place.here, place.after});
+        ears.cut(place);
         left.erase(left.begin() + static_cast<std::ptrdiff_t>(at));
     }
     return triangles;

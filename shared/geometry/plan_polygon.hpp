@@ -31,7 +31,7 @@ std::vector<Point2d> clipToBox(PlanPolygon corners, Point2d lowest, Point2d high
 using Triangle = std::array<std::size_t, 3>; // indices of corners, counter-clockwise
 
 // By cutting off ears (Meisters, "Polygons Have Ears", 1975), each time the one whose new edge is shortest;
-// O(n³) of exact orientation tests at worst, for polygons drawn by hand. Corners in either sense; those on a
+// O(n²) exact orientation tests at worst. Corners in either sense; those on a
 // straight edge are allowed, and belong to no triangle of their own. Errors: invalidArgument for no area, or
 // edges that cross.
 Result<std::vector<Triangle>> triangulate(PlanPolygon corners);

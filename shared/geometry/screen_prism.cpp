@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace stipple {
@@ -95,6 +96,13 @@ Overlap ScreenPrism::overlapOf(const BoxD& box) const {
     for (const ConvexRegion& part : parts_)
         most = std::max(most, part.overlapOf(box));
     return most;
+}
+
+ScreenPrism ScreenPrism::near(const BoxD& box) const {
+    ScreenPrism some;
+    std::copy_if(parts_.begin(), parts_.end(), std::back_inserter(some.parts_),
+                 [&](const ConvexRegion& part) { return part.overlapOf(box) != Overlap::none; });
+    return some;
 }
 
 } // namespace stipple

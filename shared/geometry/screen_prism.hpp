@@ -38,6 +38,8 @@ class ScreenPrism {
     // `none` and `whole` are certain; `partial` may be said of a box that several triangles cover together,
     // or that misses the prism by little.
     Overlap overlapOf(const BoxD& box) const;
+    // What holds the same places of `box`, made of those of the triangles that may hold any.
+    ScreenPrism near(const BoxD& box) const;
 
   private:
     ScreenPrism() = default;

@@ -83,7 +83,7 @@ struct Scene {
     Work work(const std::vector<NodePart>& parts, const Style& style) const {
         return {cloud.planOf(parts, camera, style), cloud.bytesOf(parts, style)};
     }
-    std::vector<NodePart> large(const ClipBoxes* clips = nullptr) const {
+    std::vector<NodePart> large(const Clips* clips = nullptr) const {
         return cloud.selected(camera, minNodePixels, 0, clips);
     }
 };
@@ -132,7 +132,7 @@ void clip(Scene& scene, Table& table) {
     style.clipBoxes = {{(bounds.min + bounds.max) * 0.5, (bounds.max - bounds.min) * 0.25, axesTurned(30)}};
     for (ClipMode mode : {ClipMode::hideOutside, ClipMode::hideInside}) {
         style.clipBoxes[0].mode = mode;
-        ClipBoxes clips = need(ClipBoxes::make(style.clipBoxes));
+        Clips clips = need(Clips::make(style.clipBoxes));
         scene.cloud.hideBy(style);
         Work all = scene.work(scene.large(), style), some = scene.work(scene.large(&clips), style);
         table.add(mode == ClipMode::hideOutside ? "clip: hide outside a turned box of half the sides"

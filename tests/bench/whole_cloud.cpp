@@ -93,7 +93,7 @@ bool WholeCloud::hidesAllOf(std::uint32_t node) const {
 }
 
 std::vector<NodePart> WholeCloud::selected(const Camera& camera, double minNodePixels, double detailPixels,
-                                           const ClipBoxes* clips) const {
+                                           const Clips* clips) const {
     std::vector<NodeResidency> residency(hierarchy_.size());
     std::vector<SelectionCloud> clouds{{&hierarchy_, residency, 12}};
     SelectionInput input;

@@ -35,7 +35,7 @@ class WholeCloud {
 
     // What the client selects where everything is here, without a budget.
     std::vector<NodePart> selected(const Camera& camera, double minNodePixels, double detailPixels = 0,
-                                   const ClipBoxes* clips = nullptr) const;
+                                   const Clips* clips = nullptr) const;
     FramePlan planOf(const std::vector<NodePart>& parts, const Camera& camera, const Style& style) const;
     // What is fetched for them: strata, and the further blocks that the style needs.
     double bytesOf(const std::vector<NodePart>& parts, const Style& style) const;

@@ -230,6 +230,11 @@ describe('the JSON Schema of scenes', () => {
             colourMode: 'mix', mix: [{ colourMode: 'rgb' }, { colourMode: 'elevation', weight: 0.5 }], hiddenClasses: [5],
             filters: [{ attribute: 'Return Number', min: null, max: 3 }], edl: { strength: 0.7 }, elevationRange: [1, 2],
             clipBoxes: [{ mode: 'highlight', centre: [1, 2, 3], halfSize: [4, 5, 6] }], background: [1, 2, 3],
+            clipRegions: [
+                { mode: 'hideInside', region: { polygon: [[0, 0], [9, 0], [0, 9]], holes: [[[1, 1], [2, 1], [1, 2]]], heights: [null, 4] } },
+                { mode: 'highlight', region: { line: [[0, 0], [9, 0]], width: 2 } },
+                { mode: 'hideInside', region: { prism: { eye: null, forward: [0, 0, -1], corners: [[0, 0, 9], [4, 0, 9], [0, 4, 9]] } } },
+            ],
         });
         await button(page, 'Distance').click();
         for (const [i, x] of [430, 500].entries()) {
@@ -269,6 +274,12 @@ describe('the JSON Schema of scenes', () => {
             { ...scene, style: { filters: [{ min: 1 }] } },
             { ...scene, style: { hiddenClasses: [256] } },
             { ...scene, style: { clipBoxes: [{ halfSize: [-1, 1, 1] }] } },
+            { ...scene, style: { clipRegions: [{ mode: 'hideInside' }] } },
+            { ...scene, style: { clipRegions: [{ region: {} }] } },
+            { ...scene, style: { clipRegions: [{ region: { polygon: [[0, 0], [1, 1]] } }] } },
+            { ...scene, style: { clipRegions: [{ region: { line: [[0, 0], [1, 1]] } }] } },
+            { ...scene, style: { clipRegions: [{ region: { holes: [[[0, 0], [1, 1], [1, 0]]] } }] } },
+            { ...scene, style: { clipRegions: [{ region: { prism: { corners: [[0, 0], [1, 1], [1, 0]] } } }] } },
             { ...scene, style: { edl: { neighbours: 5 } } },
             { ...scene, limits: { pointBudget: 'all' } },
             { ...scene, limits: { pointBudget: 0 } },
@@ -296,6 +307,7 @@ describe('the JSON Schema of scenes', () => {
             { ...scene, style: { filters: [{ attribute: 'Intensity', min: 2, max: 1 }] } },
             { ...scene, style: { elevationRange: [2, 1] } },
             { ...scene, style: { clipBoxes: [{ axes: [[1, 0, 0], [1, 0, 0], [0, 0, 1]] }] } },
+            { ...scene, style: { clipRegions: [{ region: { heights: [2, 1] } }] } },
             { ...scene, annotations: [annotation, annotation] },
             { ...scene, annotations: [{ ...annotation, parent: 9 }] },
             { ...scene, cameraPath: [{ camera, seconds: 1 }, { camera: { ...camera, projection: 'orthographic' }, seconds: 1 }] },

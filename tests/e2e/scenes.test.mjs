@@ -76,6 +76,12 @@ async function setUp(page) {
                 hiddenClasses: [5],
                 filters: [{ attribute: 'Return Number', min: null, max: 3 }],
                 clipBoxes: [{ mode: 'hideOutside', centre, halfSize: [90, 90, 90] }],
+                clipRegions: [
+                    {
+                        mode: 'hideInside',
+                        region: { polygon: [[-9, -9], [8, -7], [0, 0], [9, 11]].map(([x, y]) => [centre[0] + x, centre[1] + y]), heights: [null, 400] },
+                    },
+                ],
                 background: [40, 50, 60],
             });
             window.stipple.setLimits({ pointBudget: 120000 });

@@ -117,7 +117,7 @@ FramePlan testPlan(const std::vector<TestNode>& nodes, const TestView& view, con
 }
 
 void paintPlan(FramePlan& plan, const std::vector<TestNode>& nodes) {
-    Result<ClipBoxes> clips = ClipBoxes::make(plan.style.clipBoxes);
+    Result<Clips> clips = Clips::make(plan.style.clipBoxes, plan.style.clipRegions);
     if (!clips.ok())
         std::abort(); // the test's boxes are wrong
     for (std::size_t n = 0; n < nodes.size(); ++n) {

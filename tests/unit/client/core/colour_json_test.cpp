@@ -34,6 +34,15 @@ TEST_CASE("colours, filters and clip boxes come back from JSON as they were") {
     style.hiddenClasses.set(0).set(18).set(255);
     style.filters = {{"Return Number", 1, 1}, {"GPS Time", 3.5e8, std::numeric_limits<double>::infinity()}};
     style.clipBoxes = {{{1, 2, 3}, {4, 5, 6}, *axesOfQuaternion(0.1, -0.2, 0.3, 0.4), ClipMode::highlight}};
+    style.clipRegions.resize(3);
+    style.clipRegions[0].shape.rings = {{{0.1, 1}, {9, 0}, {0, 9}}, {{1, 1}, {2, 1}, {1, 2}}};
+    style.clipRegions[0].shape.heights = ValueRange{-std::numeric_limits<double>::infinity(), 0.3};
+    style.clipRegions[1] = {{}, ClipMode::highlight};
+    style.clipRegions[1].shape.line = {{1, 2}, {3, 4.1}};
+    style.clipRegions[1].shape.width = 0.7;
+    style.clipRegions[2] = {{}, ClipMode::hideInside};
+    style.clipRegions[2].shape.prism =
+        ScreenPolygon{Vec3d{0, 0, 10}, {0, 0, -1}, {{-1, -1, 5}, {1, -1, 5}, {0, 1, 5}}};
     style.highlight = {1, 2, 3};
     CHECK(styleOf(toJson(style).dump()) == style);
     CHECK(styleOf("{}", style) == style);
@@ -85,4 +94,22 @@ TEST_CASE("what is wrong with colours is said, and where") {
          "beside a rotation");
     says(R"({"clipBoxes": [{"mode": "cut"}]})", "highlight, hideInside, hideOutside");
     says(R"({"clipBoxes": [7]})", "an object");
+    says(R"({"clipRegions": [{}]})", "'region' must be given");
+    says(R"({"clipRegions": [{"region": {}}]})", "'region' must be given");
+    says(R"({"clipRegions": [{"region": {"polygon": [[0, 0], [1, 1]]}}]})",
+         "style.clipRegions[0].region.polygon: each of its rings must have three corners");
+    says(R"({"clipRegions": [{"region": {"circle": 1}}]})", "no field 'circle'");
+    says(R"({"clipRegions": [{"mode": "cut", "region": {"heights": [0, 1]}}]})", "highlight, hideInside");
+    says(
+        R"({"clipRegions": [{"region": {"prism": {"corners": [[0, 0, 0], [1, 0, 1], [1, 0, 0], [0, 0, 2]]}}}]})",
+        "the polygon's edges cross");
+    says(
+        R"({"clipRegions": [{"region": {"prism": {"corners": [[0, 0, 0], [1, 0, 0], [1, 0, 1], [0.5, 0, 0]]}}}]})",
+        "the polygon's edges cross");
+    std::string corners = "[0, 0]";
+    for (int i = 1; i <= 6000; ++i)
+        corners += ", [" + std::to_string(i) + ", " + std::to_string(i % 7) + "]";
+    std::string large = "{\"region\": {\"polygon\": [" + corners + "]}}";
+    says(("{\"clipRegions\": [" + large + "]}").c_str(), "accepted");
+    says(("{\"clipRegions\": [" + large + ", " + large + "]}").c_str(), "may have 10000 corners together");
 }

@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // A node of points along x at 0, 1, 2 …, 10 steps of 0.5 apart, with what a test gives it.
 struct Fixture {
     ColourStyle style;
-    ClipBoxes clips;
+    Clips clips;
     Schema schema;
     Grid grid{{0.5, 0.5, 0.5}, {0, 0, 0}};
     Vec3i corner{0, 0, 0};
@@ -48,7 +48,7 @@ struct Fixture {
     }
 
     std::shared_ptr<const NodePaint> paint() {
-        auto made = ClipBoxes::make(style.clipBoxes);
+        auto made = Clips::make(style.clipBoxes, style.clipRegions);
         REQUIRE(made.ok());
         clips = std::move(*made);
         BoxD box;
@@ -217,6 +217,27 @@ TEST_CASE("clip boxes hide and tint points by where the grid puts them") {
     f.style.clipBoxes[0].centre.x = 1000;
     CHECK_FALSE(f.paint());
     f.style.clipBoxes[0].mode = ClipMode::hideOutside;
+    CHECK(f.paint()->hidden == 5);
+}
+
+TEST_CASE("clip regions hide and tint points by where the grid puts them") {
+    Fixture f(5); // x = 0, 5, 10, 15, 20
+    f.style.clipRegions.resize(1);
+    ClipRegion& clip = f.style.clipRegions[0];
+    clip.shape.rings = {{{5, -9}, {15, -9}, {15, 9}, {5, 9}}}; // edges through points
+    CHECK(f.shown() == Shown{false, true, true, true, false});
+    clip.mode = ClipMode::hideInside;
+    CHECK(f.shown() == Shown{true, false, false, false, true});
+    clip.mode = ClipMode::highlight;
+    f.style.highlight = {255, 0, 0};
+    auto paint = f.paint();
+    CHECK(paint->hidden == 0);
+    CHECK((*paint->words)[0] == plainColourWord);
+    CHECK((*paint->words)[1] == 0xFF5A5AD9u);
+    for (Point2d& corner : clip.shape.rings[0])
+        corner.x += 1000;
+    CHECK_FALSE(f.paint());
+    clip.mode = ClipMode::hideOutside;
     CHECK(f.paint()->hidden == 5);
 }
 

@@ -2,6 +2,7 @@
 #include "client/core/region_scan.hpp"
 
 #include "client/core/camera.hpp"
+#include "client/core/frame_planner.hpp"
 #include "client/core/region_json.hpp"
 #include "client/core/screen_polygon.hpp"
 #include "shared/geometry/oriented_box.hpp"
@@ -161,6 +162,77 @@ TEST_CASE("a scan of what a polygon on the screen shows has the points that are 
     }
 }
 
+namespace {
+
+// Where the points are that a style leaves of the picture of everything.
+std::vector<Vec3i> shownWith(const Style& style) {
+    Fixture fixture(town().file);
+    ViewSession& session = *fixture.session;
+    session.setViewport(800, 600);
+    SessionLimits limits;
+    limits.minNodePixels = 0.01;
+    session.setLimits(limits);
+    session.setCamera(namedCamera(NamedView::top, town().metadata.worldBounds(), 800.0 / 600));
+    session.setStyle(style);
+    for (int i = 0; i < 500 && (i == 0 || !session.settled()); ++i)
+        session.update();
+    REQUIRE(session.settled());
+    std::vector<Vec3i> shown;
+    for (const DrawNode& node : session.plan().nodes) {
+        Vec3i corner = town().metadata.rootCube.nodeMin(node.node->key);
+        for (std::uint32_t i = 0; i < node.pointCount; ++i) {
+            Vec3<std::uint32_t> p = positionOf(*node.node, i);
+            if (node.shows(i))
+                shown.push_back({corner.x + p.x, corner.y + p.y, corner.z + p.z});
+        }
+    }
+    std::sort(shown.begin(), shown.end(), [](const Vec3i& a, const Vec3i& b) {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    });
+    return shown;
+}
+
+// The corners lie on points' places, so edges go through points.
+std::vector<RegionShape> clippedShapes() {
+    std::vector<RegionShape> shapes(5);
+    shapes[0].rings = {
+        {{500100, 4000100}, {500800, 4000150}, {500450.25, 4000400.5}, {500700, 4000900}, {500000, 4000700}},
+        {{500200, 4000200}, {500400, 4000200}, {500300, 4000500}}};
+    shapes[0].heights = ValueRange{20, 160.25};
+    shapes[1].rings = {
+        {{500000, 4000000}, {500800, 4000800}, {500800, 4000000}, {500000, 4000800}}}; // a bow tie
+    shapes[2].line = {{500000, 4000000}, {500500, 4000250}, {500400, 4000900}, {500450, 4000100}};
+    shapes[2].width = 80.5;
+    shapes[3].prism = ScreenPolygon{
+        Vec3d{500400, 4000300, 900},
+        {0.1, 0.05, -1},
+        {{500200, 4000200, 0}, {500700, 4000250, 0}, {500450, 4000400, 0}, {500600, 4000800, 0}}};
+    shapes[4].box =
+        RegionShape::Box{{500400, 4000400, 100}, {300, 120, 80}, *axesOfQuaternion(0.3, -0.2, 0.4, 0.8)};
+    return shapes;
+}
+
+} // namespace
+
+TEST_CASE("what a clip region leaves in the picture is what a scan of the region has") {
+    for (const RegionShape& shape : clippedShapes()) {
+        INFO(toJson(shape).dump());
+        auto filter = filterOf(shape);
+        REQUIRE(filter.ok());
+        Fixture fixture(town().file);
+        ScannedRows scanned = rowsByScan(*fixture.session, requestFor(*filter));
+        Style style;
+        style.clipRegions = {{shape, ClipMode::hideOutside}};
+        std::vector<Vec3i> shown = shownWith(style), expected;
+        for (const PointRow& row : scanned.rows)
+            expected.push_back({row.first[0], row.first[1], row.first[2]});
+        CHECK(expected.size() > 500);
+        CHECK(shown == expected);
+        style.clipRegions[0].mode = ClipMode::hideInside;
+        CHECK(shownWith(style).size() == town().metadata.pointCount - expected.size());
+    }
+}
+
 TEST_CASE("nodes outside a region are counted and not read, nor are attributes that nobody asked for") {
     Fixture fixture(town().file);
     PointFilter filter;
@@ -311,6 +383,18 @@ TEST_CASE("regions are read from JSON, and what is wrong with them is named") {
             R"({"prism": {"eye": null, "forward": [0, 0, -1], "corners": [[0, 0, 9], [4, 0, 9], [0, 4, 9]]}})")
             .ok());
     REQUIRE(read("{}").ok());
+    auto ring = read(
+        R"({"polygon": [[0, 0], [9, 0], [0, 9]], "holes": [[[1, 1], [2, 1], [1, 2]]], "heights": [null, 4]})");
+    REQUIRE(ring.ok());
+    CHECK_FALSE(ring->region->contains({1.25, 1.25}));
+    CHECK(ring->region->contains({1, 1.5}));
+    CHECK(std::isinf(ring->box->min.z));
+    CHECK(ring->box->max.z == 4);
+    for (const RegionShape& shape : clippedShapes()) {
+        auto again = shapeFromJson(nlohmann::json::parse(toJson(shape).dump()), "region");
+        REQUIRE(again.ok());
+        CHECK(*again == shape);
+    }
     for (
         const char* text :
         {R"([])", R"({"sphere": 1})", R"({"box": {"centre": [1, 2], "halfSize": [1, 1, 1]}})",
@@ -318,6 +402,9 @@ TEST_CASE("regions are read from JSON, and what is wrong with them is named") {
          R"({"box": {"centre": [1, 2, 3], "halfSize": [1, 1, 1], "axes": [[1, 0, 0]]}})",
          R"({"polygon": [[0, 0], [4, 0]]})", R"({"polygon": [[0, 0], [4, 0], [0]]})",
          R"({"polygon": [[0, 0], [4, 0], [0, 4]], "heights": [2, 1]})", R"({"line": [[0, 0], [4, 0]]})",
+         R"({"polygon": []})", R"({"line": [], "width": 2})", R"({"holes": [[[1, 1], [2, 1], [1, 2]]]})",
+         R"({"polygon": [[0, 0], [4, 0], [0, 4]], "holes": [[[1, 1], [2, 1]]]})",
+         R"({"polygon": [[0, 0], [4, 0], [0, 4]], "holes": [7]})", R"({"heights": ["low", 1]})",
          R"({"prism": {"forward": [0, 0, -1], "corners": [[0, 0, 9], [4, 4, 9], [4, 0, 9], [0, 4, 9]]}})",
          R"({"prism": {"eye": [0, 0, 10], "forward": [0, 0, -1], "corners": [[0, 0, 11], [4, 0, 9], [0, 4, 9]]}})"}) {
         auto region = read(text);

@@ -70,6 +70,22 @@ TEST_CASE("nodes that are clipped away are neither fetched nor drawn") {
     CHECK(shown == plan.counters.pointsDrawn - plan.counters.pointsHidden);
     CHECK(shown > 0);
 
+    std::uint64_t clipped = plan.counters.nodesClipped;
+    Style footprint; // the same corner, as a polygon
+    Vec3d high = bounds.min + size * 0.25;
+    footprint.clipRegions.resize(1);
+    footprint.clipRegions[0].shape.rings = {
+        {{bounds.min.x, bounds.min.y}, {high.x, bounds.min.y}, {high.x, high.y}, {bounds.min.x, high.y}}};
+    footprint.clipRegions[0].shape.heights = ValueRange{bounds.min.z, high.z};
+    SessionFixture other(everything());
+    other.session->setStyle(footprint);
+    other.openAndFit(bigCloud());
+    REQUIRE(other.settle());
+    const FrameCounters& counters = other.session->plan().counters;
+    CHECK(counters.nodesClipped == clipped);
+    CHECK(other.session->counters().bytesReceived == fixture.session->counters().bytesReceived);
+    CHECK(counters.pointsDrawn - counters.pointsHidden == shown);
+
     style.clipBoxes[0].halfSize = {1e200, 1, 1}; // can't be computed with
     fixture.session->setStyle(style);
     CHECK(fixture.session->style().clipBoxes[0].halfSize.x < 1e100);
