@@ -55,6 +55,14 @@ inline constexpr Parameter polygonParameter{
         "them), well-known text (POLYGON, MULTIPOLYGON), or the corners x,y;x,y;…",
     .example = "-1e7,-1e7;1e7,-1e7;0,1e7",
 };
+inline constexpr Parameter regionParameter{
+    .name = "region",
+    .description =
+        "Points in a region as styles and scenes have it, its edges included: JSON with a polygon, its holes "
+        "and "
+        "heights, a line and its width, a prism (a polygon on the screen), or a box turned in any way.",
+    .example = R"({"polygon": [[-1e7, -1e7], [1e7, -1e7], [0, 1e7]], "heights": [null, 1e6]})",
+};
 inline constexpr Parameter minZParameter{
     .name = "minz",
     .description = "Points of at least this height.",
@@ -192,9 +200,9 @@ inline constexpr Parameter pointFormatParameter{
 };
 
 inline constexpr std::array pointsParameters{
-    boxParameter,   centerParameter,     sizeParameter,        rotationParameter, polygonParameter,
-    minZParameter,  maxZParameter,       classParameter,       whereParameter,    spacingParameter,
-    limitParameter, attributesParameter, pointFormatParameter, versionParameter};
+    boxParameter,     centerParameter, sizeParameter,       rotationParameter,    polygonParameter,
+    regionParameter,  minZParameter,   maxZParameter,       classParameter,       whereParameter,
+    spacingParameter, limitParameter,  attributesParameter, pointFormatParameter, versionParameter};
 inline constexpr std::array profileParameters{
     lineParameter,       widthParameter,       boxParameter,    polygonParameter, minZParameter,
     maxZParameter,       classParameter,       whereParameter,  spacingParameter, limitParameter,

@@ -22,8 +22,8 @@ inline constexpr Parameter binsParameter{
 };
 
 inline constexpr std::array statisticsParameters{
-    boxParameter,        centerParameter, sizeParameter,   rotationParameter, polygonParameter,
-    minZParameter,       maxZParameter,   classParameter,  whereParameter,    spacingParameter,
-    attributesParameter, binsParameter,   versionParameter};
+    boxParameter,     centerParameter,     sizeParameter, rotationParameter, polygonParameter,
+    regionParameter,  minZParameter,       maxZParameter, classParameter,    whereParameter,
+    spacingParameter, attributesParameter, binsParameter, versionParameter};
 
 } // namespace stipple::server

@@ -1,7 +1,10 @@
 // Points by address against looking at every point.
 #include "shared/base/text.hpp"
 #include "shared/geometry/corridor.hpp"
+#include "shared/geometry/oriented_box.hpp"
 #include "tests/unit/server/api/points_oracle.hpp"
+
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 
@@ -95,6 +98,47 @@ TEST_CASE("points are chosen by a polygon and heights") {
          "POLYGON ((500000 4000000, 500600 4000000, 500000 4000600, 500000 4000000))",
          R"({"type": "Polygon", "coordinates": [[[500000,4000000],[500600,4000000],[500000,4000600],[500000,4000000]]]})"})
         town.compare("polygon=" + encoded(text) + "&minz=200&maxz=800", wanted);
+}
+
+TEST_CASE("points are chosen by a box that is turned in any way") {
+    Town town;
+    for (int turn = 0; turn < 4; ++turn) {
+        auto axes = axesOfQuaternion(0.3 - 0.2 * turn, 0.1 * turn - 0.35, 0.4, 0.25 + 0.3 * turn);
+        REQUIRE(axes);
+        const Vec3d centre{500300.1, 4000310.1, 500.1}, half{250, 140.5, 330};
+        nlohmann::json box{{"centre", {centre.x, centre.y, centre.z}},
+                           {"halfSize", {half.x, half.y, half.z}},
+                           {"axes", nlohmann::json::array()}};
+        for (const Vec3d& axis : *axes)
+            box["axes"].push_back({axis.x, axis.y, axis.z});
+        town.compare("region=" + encoded(nlohmann::json{{"box", box}}.dump()), [&](std::size_t i) {
+            Vec3d p = town.every.world(i) - centre;
+            return std::abs(dot(p, (*axes)[0])) <= half.x && std::abs(dot(p, (*axes)[1])) <= half.y &&
+                   std::abs(dot(p, (*axes)[2])) <= half.z;
+        });
+    }
+}
+
+TEST_CASE("points are chosen by a footprint with a hole, and by a polygon on the screen") {
+    Town town;
+    // x + y <= 600 of the corner, without the square between 100 and 200, whose edges belong to the region.
+    const char* foot =
+        R"({"polygon": [[500000, 4000000], [500600, 4000000], [500000, 4000600]], "heights": [200, null],
+        "holes": [[[500100, 4000100], [500200, 4000100], [500200, 4000200], [500100, 4000200]]]})";
+    town.compare("maxz=800&region=" + encoded(foot), [&](std::size_t i) {
+        Vec3d p = town.every.world(i) - Vec3d{500000, 4000000, 0};
+        bool inHole = p.x > 100 && p.x < 200 && p.y > 100 && p.y < 200;
+        return p.x >= 0 && p.y >= 0 && p.x + p.y <= 600 && !inHole && p.z >= 200 && p.z <= 800;
+    });
+    // Seen from 1000 above the ground: a square that is 1 wide for each 2 away.
+    const char* prism =
+        R"({"prism": {"eye": [500300.1, 4000300.1, 1000.1], "forward": [0, 0, -1], "corners": [
+        [500200.1, 4000200.1, 600.1], [500400.1, 4000200.1, 600.1], [500400.1, 4000400.1, 600.1],
+        [500200.1, 4000400.1, 600.1]]}})";
+    town.compare("region=" + encoded(prism), [&](std::size_t i) {
+        Vec3d p = town.every.world(i) - Vec3d{500300.1, 4000300.1, 1000.1};
+        return std::max(std::abs(p.x), std::abs(p.y)) <= -p.z / 4;
+    });
 }
 
 TEST_CASE("points are chosen by values, whatever the order of the query") {
@@ -254,6 +298,12 @@ TEST_CASE("a parameter that means nothing is named, with what is allowed") {
              {"polygon=1,2", "polygon"},
              {"polygon=%7B%22type%22", "polygon"},
              {"polygon=POINT+(1+2)", "polygon"},
+             {"region=7", "region"},
+             {"region=%7B", "region"},
+             {"region=%7B%22circle%22:1%7D", "region"},
+             {"region=%7B%22polygon%22:[[0,0],[1,1]]%7D", "region"},
+             {"region=%7B%22polygon%22:[[0,0],[1,1],[1,0]]%7D&polygon=0,0;1,1;1,0", "region"},
+             {"region=%7B%22heights%22:[0,1]%7D&minz=2", "region"},
              {"minz=x", "minz"},
              {"minz=5&maxz=4", "maxz"},
              {"box=0,0,0,1,1,1&minz=5", "minz"},
