@@ -245,12 +245,13 @@ describe('fingers and pen', () => {
     });
     const touch = (type, ...points) =>
         session.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-    /** All fingers go from where they are to the others, in steps. */
+    /** All fingers go from where they are to the others, in steps that do not wait for the page. */
     async function fingers(from, to, steps = 8) {
-        await touch('touchStart', ...from);
+        const sent = [touch('touchStart', ...from)];
         for (let i = 1; i <= steps; i++)
-            await touch('touchMove', ...from.map(([x, y], at) => [x + ((to[at][0] - x) * i) / steps, y + ((to[at][1] - y) * i) / steps]));
-        await touch('touchEnd');
+            sent.push(touch('touchMove', ...from.map(([x, y], at) => [x + ((to[at][0] - x) * i) / steps, y + ((to[at][1] - y) * i) / steps])));
+        await Promise.all([...sent, touch('touchEnd')]);
+        await page.waitForTimeout(700); // what is under them is known some frames later
         await settle(page);
         return camera();
     }
