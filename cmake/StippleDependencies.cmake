@@ -12,11 +12,18 @@ if(EMSCRIPTEN)
   endif()
   add_library(stipple_zstd STATIC ${zstd_sources})
   target_compile_options(stipple_zstd PRIVATE -O3 -w)
+  # The decoder for size, for the page's own thread: it reads pieces of hierarchies, and a point now and then.
+  list(FILTER zstd_sources EXCLUDE REGEX "/lib/compress/")
+  add_library(stipple_zstd_compact OBJECT ${zstd_sources})
+  target_compile_options(stipple_zstd_compact PRIVATE -Oz -w)
   # One way of decoding literals and sequences instead of two (zstd's lib/README.md): 5 kB less on the wire in each program. Positions and
   # colours decode as fast, GPS times a tenth slower.
-  target_compile_definitions(stipple_zstd PRIVATE HUF_FORCE_DECOMPRESS_X1 ZSTD_FORCE_DECOMPRESS_SEQUENCES_SHORT)
-  target_compile_definitions(stipple_zstd PRIVATE ZSTD_DISABLE_ASM=1)
-  target_include_directories(stipple_zstd SYSTEM PUBLIC ${STIPPLE_DEPS}/zstd/lib)
+  foreach(library stipple_zstd stipple_zstd_compact)
+    target_compile_definitions(${library} PRIVATE HUF_FORCE_DECOMPRESS_X1 ZSTD_FORCE_DECOMPRESS_SEQUENCES_SHORT)
+    target_compile_definitions(${library} PRIVATE ZSTD_DISABLE_ASM=1)
+    target_include_directories(${library} SYSTEM PUBLIC ${STIPPLE_DEPS}/zstd/lib)
+  endforeach()
+  target_compile_definitions(stipple_zstd_compact PRIVATE ZSTD_NO_INLINE)
 
   add_library(stipple_json INTERFACE)
   target_include_directories(stipple_json SYSTEM INTERFACE ${STIPPLE_DEPS}/include)
