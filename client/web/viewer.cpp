@@ -6,6 +6,8 @@
 #include "client/core/gradients.hpp"
 #include "client/core/json.hpp"
 #include "client/core/point_query.hpp"
+#include "client/core/region_json.hpp"
+#include "client/core/screen_polygon.hpp"
 #include "client/survey/measure_json.hpp"
 #include "client/web/browser_source.hpp"
 #include "client/web/host.hpp"
@@ -412,6 +414,16 @@ std::string Viewer::projectJson(std::string_view positions) const {
         places.push_back(isBehind ? nlohmann::json(nullptr) : nlohmann::json{pixel.x, pixel.y, pixel.z});
     }
     return jsonText(places);
+}
+
+std::string Viewer::screenPolygonJson(std::string_view corners) const {
+    Result<nlohmann::json> parsed = parseJson(corners, "corners");
+    std::vector<Point2d> places;
+    if (parsed.ok() && parsed->is_array())
+        for (const nlohmann::json& corner : *parsed)
+            if (corner.is_array() && corner.size() == 2 && corner[0].is_number() && corner[1].is_number())
+                places.push_back({corner[0].get<double>(), corner[1].get<double>()});
+    return jsonText(toJson(screenPolygon(drawn_.view, drawn_.width, drawn_.height, places)));
 }
 
 std::string Viewer::takePlaceJson() {

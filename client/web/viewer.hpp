@@ -101,6 +101,9 @@ class Viewer {
     // Where world positions [[x, y, z], …] are in the present picture: [x, y, view distance] each, in pixels
     // from the canvas's top left; null for what is behind the camera.
     std::string projectJson(std::string_view positions) const;
+    // What a polygon on the present picture reaches into (client/core/screen_polygon.hpp); corners [[x, y],
+    // …] in pixels from the canvas's top left.
+    std::string screenPolygonJson(std::string_view corners) const;
 
     // Scans of regions (client/core/region_scan.hpp), for the worker that makes something of their points.
     // The metadata of a cloud as in its file; empty if it is not open.

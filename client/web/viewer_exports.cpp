@@ -176,6 +176,9 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_measure(const char* json) {
 EMSCRIPTEN_KEEPALIVE const char* stipple_project(const char* json) {
     return give(viewer->projectJson(json));
 }
+EMSCRIPTEN_KEEPALIVE const char* stipple_screen_polygon(const char* json) {
+    return give(viewer->screenPolygonJson(json));
+}
 
 // Frames.
 EMSCRIPTEN_KEEPALIVE void stipple_load() {

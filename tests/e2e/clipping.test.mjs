@@ -1,8 +1,12 @@
 // Clip boxes by mouse and number: sides, middle and turn follow the pointer, and the points inside are the server's, all of them.
+// Clip polygons on the ground and on the screen, by mouse, finger and keyboard: what is shown, picked and saved is what lies in them.
 import assert from 'node:assert/strict';
+import { readFile, writeFile } from 'node:fs/promises';
+import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
 import { coverage } from './support/picture.mjs';
+import { stipple } from './support/program.mjs';
 import { keepScreenshot, readPixels, settle } from './support/browser.mjs';
 import { dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
@@ -19,6 +23,18 @@ const box = async () => (await page.evaluate(() => window.stipple.style())).clip
 const close = (a, b, bound) => assert.ok(norm(minus(a, b)) <= bound, `${a} and ${b}`);
 const face = ({ centre, halfSize, axes }, axis, sign) =>
     centre.map((value, i) => value + sign * halfSize[axis] * axes[axis][i]);
+
+/** Places of points of a CSV file. */
+function rowsIn(csv) {
+    const [head, ...rows] = csv.trim().split(/\r?\n/);
+    const names = head.split(',').map((name) => name.toLowerCase());
+    return rows.map((row) => {
+        const fields = row.split(',');
+        return ['x', 'y', 'z'].map((name) => Number(fields[names.indexOf(name)]));
+    });
+}
+const rowsOf = async (address) => rowsIn(await (await fetch(address)).text());
+const text = (rows) => rows.map((row) => row.join(' ')).sort();
 
 async function drag(selector, dx, dy) {
     const handle = await page.locator(`stipple-clip-overlay ${selector}`).boundingBox();
@@ -106,14 +122,6 @@ describe('clip boxes', () => {
 
     test('the points inside, as a file of the server, are those of the whole cloud that lie in the box', async () => {
         const { centre, halfSize, axes } = await box();
-        const rowsOf = async (address) => {
-            const [head, ...rows] = (await (await fetch(address)).text()).trim().split(/\r?\n/);
-            const names = head.split(',').map((name) => name.toLowerCase());
-            return rows.map((row) => {
-                const fields = row.split(',');
-                return ['x', 'y', 'z'].map((name) => Number(fields[names.indexOf(name)]));
-            });
-        };
         const address = await page.locator('[data-box="0"] a', { hasText: 'CSV' }).getAttribute('href');
         const inside = await rowsOf(address);
         const all = await rowsOf(`${address.split('/points?')[0]}/points?format=csv`);
@@ -121,12 +129,167 @@ describe('clip boxes', () => {
         const expected = all.filter((p) =>
             axes.every((axis, a) => Math.abs(dot(minus(p, centre), axis)) <= halfSize[a]),
         );
-        const text = (rows) => rows.map((row) => row.join(' ')).sort();
         console.log(`  ${inside.length} of ${all.length} points are inside`);
         assert.ok(inside.length > 1000);
         assert.deepEqual(text(inside), text(expected));
         await page.getByRole('button', { name: 'Delete Box 1' }).click();
         assert.equal(await box(), undefined);
+        assert.equal(await page.locator('stipple-clip-overlay g').count(), 0);
+        assert.deepEqual(complaints, []);
+    });
+});
+
+/** In plan, by crossings; away from its edges. */
+function holds(ring, [x, y]) {
+    let inside = false;
+    for (let i = 0, j = ring.length - 1; i < ring.length; j = i++) {
+        const [x1, y1] = ring[i], [x2, y2] = ring[j];
+        if (y1 > y !== y2 > y && x < ((x2 - x1) * (y - y1)) / (y2 - y1) + x1) inside = !inside;
+    }
+    return inside;
+}
+
+/** CSS pixels of the canvas, of a perspective camera. */
+function shownAt({ position, target, up, fovYDegrees }, { width, height }, p) {
+    const unit = (v) => v.map((value) => value / norm(v));
+    const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
+    const forward = unit(minus(target, position)), right = unit(cross(forward, up)), above = cross(right, forward);
+    const from = minus(p, position), depth = dot(from, forward), scale = height / 2 / Math.tan((fovYDegrees * Math.PI) / 360) / depth;
+    return [width / 2 + dot(from, right) * scale, height / 2 - dot(from, above) * scale];
+}
+
+describe('clip polygons', () => {
+    const region = async () => (await page.evaluate(() => window.stipple.style())).clipRegions[0];
+    const item = () => page.locator('li[data-region="0"]');
+    const csv = () => page.locator('li[data-region="0"] a', { hasText: 'CSV' }).getAttribute('href');
+    let all;
+
+    before(async () => {
+        all = await rowsOf(new URL('api/v1/clouds/town/points?format=csv', town.address));
+        await page.evaluate(() => window.stipple.setLimits({ minNodePixels: 1, pointBudget: 1_000_000 }));
+        await settle(page);
+    });
+    /** All points that the picture has of the cloud, less what is hidden. */
+    const shown = async () => {
+        await settle(page);
+        const { frame } = await page.evaluate(() => window.stipple.counters());
+        return frame.pointsDrawn - frame.pointsHidden;
+    };
+
+    test('on the ground: corners are clicked, heights entered; the picture, the file and the native export have the same points', async () => {
+        await page.keyboard.press('Escape');
+        await page.evaluate(() => window.stipple.setStyle({ sizePixels: 6 }));
+        await page.locator('canvas').focus();
+        await page.keyboard.press('1'); // from the top: all of it is in view
+        await page.getByRole('button', { name: 'Polygon on the ground' }).click();
+        const places = [[380, 220], [660, 250], [520, 330], [640, 450], [400, 430]];
+        for (const [i, [x, y]] of places.entries()) {
+            await page.locator('canvas').click({ position: { x, y } });
+            await page.locator(`stipple-clip-overlay [data-drawn="${i + 1}"]`).waitFor({ state: 'attached' });
+        }
+        await page.locator('canvas').click({ position: { x: 300, y: 200 } });
+        await page.locator('stipple-clip-overlay [data-drawn="6"]').waitFor({ state: 'attached' });
+        await page.keyboard.press('Backspace');
+        await page.keyboard.press('Enter');
+        await item().waitFor({ state: 'attached' });
+        const { mode, region: { polygon } } = await region();
+        assert.equal(mode, 'hideOutside');
+        assert.equal(polygon.length, 5);
+        assert.ok(polygon.every(([x, y]) => all.some((p) => p[0] === x && p[1] === y)), 'corners are points of the cloud');
+
+        // A height that many points have, so that it matters on which side of it they count.
+        const inPlan = all.filter((p) => holds(polygon, p));
+        const heights = inPlan.map(([, , z]) => z).sort((a, b) => a - b);
+        const low = heights[Math.floor(heights.length / 4)], high = heights[Math.floor(heights.length * 0.95)];
+        for (const [label, value] of [['Lowest height of Polygon 1', low], ['Highest height of Polygon 1', high]]) {
+            await page.getByLabel(label).fill(String(value));
+            await page.getByLabel(label).press('Tab');
+        }
+        assert.deepEqual((await region()).region.heights, [low, high]);
+        await page.getByLabel('Highest height of Polygon 1').fill(String(low - 1)); // below the lowest
+        await page.getByLabel('Highest height of Polygon 1').press('Tab');
+        assert.deepEqual((await region()).region.heights, [low, high]);
+
+        const saved = await rowsOf(await csv());
+        const [geojson, out] = ['foot.geojson', 'foot.csv'].map((name) => join(town.folder, name));
+        await writeFile(geojson, JSON.stringify({ type: 'Polygon', coordinates: [[...polygon, polygon[0]]] }));
+        await stipple('export', join(town.folder, 'town.stipple'), '-o', out, '--polygon', geojson, '--height', `${low}..${high}`);
+        const native = rowsIn(await readFile(out, 'utf8'));
+        console.log(`  ${saved.length} of ${all.length} points are inside`);
+        assert.ok(saved.length > 500);
+        assert.deepEqual(text(saved), text(native));
+        const corners = new Set(polygon.map(String));
+        const byHand = inPlan.filter(([x, y, z]) => z >= low && z <= high && !corners.has(String([x, y])));
+        assert.deepEqual(text(saved.filter(([x, y]) => !corners.has(String([x, y])))), text(byHand));
+        assert.equal(await shown(), saved.length);
+        await keepScreenshot(page, 'clip_polygon');
+        await item().getByLabel('Mode').selectOption({ label: 'Hide inside' });
+        assert.equal(await shown(), all.length - saved.length);
+        await item().getByLabel('Mode').selectOption({ label: 'Highlight' });
+        assert.equal(await shown(), all.length);
+        await item().getByLabel('Mode').selectOption({ label: 'Hide outside' });
+        await settle(page);
+        const inside = new Set(text(saved));
+        let picked = 0;
+        for (let x = 360; x < 700; x += 35)
+            for (const y of [260, 320, 380, 440]) {
+                const point = await page.evaluate(([at, up]) => window.stipple.pick(at, up, 1), [x, y]);
+                if (!point) continue;
+                picked++;
+                assert.ok(inside.has(point.position.join(' ')), point.position.join(' '));
+            }
+        assert.ok(picked > 5, `${picked}`);
+
+        // A corner follows the pointer, over the picture.
+        const moved = await drag('[data-corner="0"]', -30, 12);
+        assert.ok(Math.hypot(moved.to.x - moved.from.x + 30, moved.to.y - moved.from.y - 12) < 3, JSON.stringify(moved));
+        assert.deepEqual((await region()).region.polygon.slice(1), polygon.slice(1));
+        await page.getByRole('button', { name: 'Delete Polygon 1' }).click();
+        assert.equal(await region(), undefined);
+    });
+
+    test('on the screen, by keyboard, mouse and finger: what shows inside it, at any depth', async () => {
+        await page.locator('canvas').focus();
+        await page.keyboard.press('3');
+        await settle(page);
+        await page.getByRole('button', { name: 'Polygon on the screen' }).click();
+        const canvas = await page.locator('canvas').boundingBox();
+        const ring = [[canvas.width / 2 - 60, canvas.height / 2 - 40], [640, 300], [520, 320], [560, 420]];
+        for (let i = 0; i < 3; i++) await page.keyboard.press('ArrowLeft'); // 20 pixels each
+        for (let i = 0; i < 10; i++) await page.keyboard.press('Shift+ArrowUp'); // 4
+        await page.keyboard.press(' ');
+        await page.locator('canvas').click({ position: { x: ring[1][0], y: ring[1][1] } });
+        const session = await page.context().newCDPSession(page);
+        const touchPoints = [{ x: canvas.x + ring[2][0], y: canvas.y + ring[2][1] }];
+        await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints });
+        await session.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+        await page.locator('canvas').click({ position: { x: ring[3][0], y: ring[3][1] } });
+        await page.locator('stipple-clip-overlay [data-drawn="4"]').waitFor({ state: 'attached' });
+        // An edge that crosses is refused, and the drawing can be mended.
+        await page.locator('canvas').click({ position: { x: 660, y: 250 } });
+        await page.keyboard.press('Enter');
+        await page.getByRole('alert').filter({ hasText: 'cross' }).waitFor();
+        await page.getByRole('button', { name: 'Dismiss' }).click();
+        await page.keyboard.press('Backspace');
+        await page.keyboard.press('Enter');
+        await item().waitFor({ state: 'attached' });
+        const saved = await rowsOf(await csv());
+        const camera = await page.evaluate(() => window.stipple.camera());
+        const isNear = (p) => ring.some((a, i) => {
+            const b = ring[(i + 1) % ring.length], length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+            return Math.abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length < 1e-6;
+        });
+        const places = all.map((p) => [p, shownAt(camera, canvas, p)]);
+        const unsure = places.filter(([, at]) => isNear(at)).length;
+        const expected = places.filter(([, at]) => holds(ring, at)).map(([p]) => p);
+        console.log(`  ${saved.length} points show in the polygon, ${unsure} of all are within a millionth of a pixel of its edges' lines`);
+        assert.ok(saved.length > 500);
+        if (unsure === 0) assert.deepEqual(text(saved), text(expected));
+        else assert.ok(Math.abs(saved.length - expected.length) <= unsure);
+        assert.equal(await shown(), saved.length);
+        await item().getByLabel('Mode').selectOption({ label: 'Hide inside' });
+        assert.equal(await shown(), all.length - saved.length);
+        await page.getByRole('button', { name: 'Delete Polygon 1' }).click();
         assert.equal(await page.locator('stipple-clip-overlay g').count(), 0);
         assert.deepEqual(complaints, []);
     });

@@ -11,17 +11,17 @@ const tapSlop = 10;
  * Pointer, wheel, touch and keys on the canvas become steps of the camera (navigation/navigator.ts). Left drag or one finger turns, or
  * moves the ground; right, middle or shift drag and three fingers do the other; two fingers pan; wheel and pinch zoom to the pointer; a double click flies
  * to the point there, F to all, U goes back and shift U forth; a click asks about the point, Escape lets go of it.
- * The space bar is a click in the middle. With a measuring tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
+ * The space bar is a click in the middle. With a tool in hand a click takes the point, a double click or Enter is the end, Backspace takes the last point back.
  */
 export function followInput(canvas: HTMLCanvasElement, model: Model): void {
-    const { annotations, measuring, navigator } = model;
+    const { annotations, navigator } = model;
     const putAnnotation = async (x: number, y: number): Promise<void> => {
         const place = await model.picking.place(x, y);
         if (place) annotations.add(place);
     };
     /** What a click does there, or the space bar in the middle. */
     const act = (x: number, y: number): void => {
-        if (measuring.isDrawing) measuring.click(x, y);
+        if (model.tool) model.tool.click(x, y);
         else if (annotations.isPlacing) void putAnnotation(x, y);
         else void model.picking.show(x, y);
     };
@@ -80,7 +80,7 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
     });
     canvas.addEventListener('pointercancel', lift);
     canvas.addEventListener('dblclick', (event) => {
-        if (measuring.isDrawing) measuring.finishInTurn();
+        if (model.tool) model.tool.finishInTurn();
         else void navigator.flyTo({ x: event.offsetX, y: event.offsetY });
     });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
@@ -101,7 +101,10 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
         if (event.ctrlKey || event.altKey || event.metaKey) return;
         if (navigator.keyDown(event.key)) return event.preventDefault();
         const middle = { x: canvas.clientWidth / 2, y: canvas.clientHeight / 2 };
-        const move = event.shiftKey
+        const { tool } = model, place = tool?.cursor ?? middle, part = event.shiftKey ? 0.1 : 0.5;
+        const move = tool?.moveCursor
+            ? (dx: number, dy: number) => tool.moveCursor!(-dx * part, -dy * part)
+            : event.shiftKey
             ? (dx: number, dy: number) => model.camera.pan(dx, dy)
             : (dx: number, dy: number) => model.camera.orbit(dx, dy);
         const actions: Record<string, () => void> = {
@@ -120,12 +123,9 @@ export function followInput(canvas: HTMLCanvasElement, model: Model): void {
             f: () => void model.camera.flyToCloud(),
             u: () => model.camera.back(),
             U: () => model.camera.forward(),
-            ' ': () => act(middle.x, middle.y),
+            ' ': () => act(place.x, place.y),
             Escape: () => model.letGo(),
-            ...(measuring.isDrawing && {
-                Enter: () => measuring.finishInTurn(),
-                Backspace: () => measuring.takeBackInTurn(),
-            }),
+            ...(tool && { Enter: () => tool.finishInTurn(), Backspace: () => tool.takeBackInTurn() }),
         };
         const action = actions[event.key];
         if (!action) return;

@@ -20,6 +20,7 @@ import { Scenes } from './scene/scenes.ts';
 import type { ShownProblem } from './shown_problem.ts';
 import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
+import type { Tool } from './tool.ts';
 import type { Bounds, CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
 import { Requests } from './wasm/requests.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
@@ -203,9 +204,19 @@ export class Model extends EventTarget {
         this.changed();
     }
 
+    /** That clicks are for. */
+    get tool(): Tool | undefined {
+        return this.measuring.isDrawing ? this.measuring : this.clipping.tool;
+    }
+    /** Another is taken in hand. */
+    putAway(): void {
+        this.measuring.finish();
+        this.clipping.tool?.stop();
+        if (this.annotations.isPlacing) this.annotations.place();
+    }
     /** Of the tool in hand, or of the point that is told about. */
     letGo(): void {
-        if (this.measuring.isDrawing) this.measuring.stop();
+        if (this.tool) this.tool.stop();
         else if (this.annotations.isPlacing) this.annotations.place();
         else this.picking.forget();
     }

@@ -114,7 +114,7 @@ export async function clipDifferences(address, box, scan, cloud, folder) {
     await writeFile(scratch(folder, 'clip.las'), Buffer.from(await response.arrayBuffer()));
     const found = allRecords(await readScan(scratch(folder, 'clip.las')));
     const right = pointsInBox(scan, box).map((i) => recordOf(scan, i));
-    const heading = new URL(address).searchParams.get('rotation'), sizes = box.halfSize.map((half) => 2 * half);
+    const [east, north] = box.axes[0], heading = (Math.atan2(north, east) * 180) / Math.PI, sizes = box.halfSize.map((half) => 2 * half);
     await stipple('export', cloud, '-o', scratch(folder, 'native.las'), '--force', '--rotated-box', `${box.centre.join(',')};${sizes.join(',')};${heading}`);
     const native = allRecords(await readScan(scratch(folder, 'native.las')));
     return { points: right.length, off: multisetDifference(found, right), native: multisetDifference(found, native) };

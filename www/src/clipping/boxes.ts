@@ -85,19 +85,6 @@ export function regionOf(box: ClipBox): RegionOf {
     return { box: { centre: box.centre, halfSize: box.halfSize, axes: axesOf(box) } };
 }
 
-/** Where the server's points inside it are (docs/API.md); undefined where it is turned in a way that has no address. */
-export function pointsAddress(apiOfCloud: string, box: ClipBox, format: string): string | undefined {
-    const heading = headingOf(box);
-    if (heading === undefined) return undefined;
-    const query = new URLSearchParams({
-        center: box.centre.join(','),
-        size: box.halfSize.map((half) => 2 * half).join(','),
-        rotation: String(heading),
-        format,
-    });
-    return `${apiOfCloud}/points?${query}`;
-}
-
 function replaced(vector: Vector, axis: number, value: number): Vector {
     return vector.map((old, i) => (i === axis ? value : old)) as Vector;
 }

@@ -1,16 +1,28 @@
 import type { Model } from '../model.ts';
-import type { ClipBox, CloudState } from '../wasm/values.ts';
-import { withHeading } from './boxes.ts';
+import type { ClipBox, ClipRegion, CloudState, Vector } from '../wasm/values.ts';
+import type { PolygonKind, PolygonTool } from './polygon_tool.ts';
 
-/** The clip boxes of the style, and which of them is being edited. */
+/** Of a region that is edited, or of a box. */
+export type Selected = { box: number } | { region: number };
+
+/** The clip boxes and regions of the style, which of them is being edited, and the tool that draws polygons. */
 export class Clipping {
-    /** Index of the box that has handles; -1: none. */
-    selected = -1;
+    /** What has handles. */
+    selected: Selected | undefined;
+    /** In hand. */
+    tool: PolygonTool | undefined;
 
     constructor(private readonly model: Model) {}
 
     get boxes(): ClipBox[] {
         return this.model.style.clipBoxes;
+    }
+    get regions(): ClipRegion[] {
+        return this.model.style.clipRegions;
+    }
+    /** There is something to show. */
+    get isInUse(): boolean {
+        return this.boxes.length + this.regions.length > 0 || this.tool !== undefined;
     }
 
     /** A box around the point in the middle of the picture, or what the camera turns about; a third as high as the view there. */
@@ -23,23 +35,51 @@ export class Clipping {
         const height =
             projection === 'orthographic' ? orthoHeight : 2 * distance * Math.tan((fovYDegrees * Math.PI) / 360);
         const half = height / 6;
-        const box = withHeading({ mode: 'hideOutside', centre, halfSize: [half, half, half] }, 0);
-        this.selected = this.boxes.length;
-        this.set([...this.boxes, box]);
+        const axes: [Vector, Vector, Vector] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+        this.selected = { box: this.boxes.length };
+        this.set([...this.boxes, { mode: 'hideOutside', centre, halfSize: [half, half, half], axes }]);
+    }
+
+    /** Takes the tool for a polygon in hand; a second time, keeps what is drawn. */
+    async draw(kind: PolygonKind): Promise<void> {
+        if (this.tool?.kind === kind) return this.tool.finishInTurn();
+        this.model.putAway();
+        const { PolygonTool } = await import('./polygon_tool.ts'); // loaded when it is first wanted
+        this.tool = new PolygonTool(this.model, kind);
+        this.model.changed();
+    }
+    /** Throws the sentence of what is wrong with it. */
+    addRegion(clip: ClipRegion): void {
+        this.model.change((viewer) => viewer.setStyle({ clipRegions: [...this.regions, clip] }));
+        this.selected = { region: this.regions.length - 1 };
+    }
+    /** The tool is put away. */
+    endTool(): void {
+        this.tool = undefined;
+        this.model.changed();
     }
 
     change(index: number, box: ClipBox): void {
         if (box.halfSize.every((half: number) => half > 0) && [...box.centre, ...box.halfSize].every(Number.isFinite))
             this.set(this.boxes.map((old, at) => (at === index ? box : old)));
     }
+    changeRegion(index: number, clip: ClipRegion): void {
+        this.model.changeStyle({ clipRegions: this.regions.map((old, at) => (at === index ? clip : old)) });
+    }
     remove(index: number): void {
-        if (this.selected === index) this.selected = -1;
-        else if (this.selected > index) this.selected -= 1;
+        this.selected = without(this.selected, 'box', index);
         this.set(this.boxes.filter((_, at) => at !== index));
     }
-    select(index: number): void {
-        this.selected = this.selected === index ? -1 : index;
-        this.model.changeStyle({}); // tells the elements
+    removeRegion(index: number): void {
+        this.selected = without(this.selected, 'region', index);
+        this.model.changeStyle({ clipRegions: this.regions.filter((_, at) => at !== index) });
+    }
+    isSelected(what: Selected): boolean {
+        return JSON.stringify(what) === JSON.stringify(this.selected);
+    }
+    select(what: Selected): void {
+        this.selected = this.isSelected(what) ? undefined : what;
+        this.model.changed();
     }
 
     /** Addresses of the server's points of each cloud, where this page's server has it. */
@@ -68,20 +108,9 @@ export class Clipping {
     }
 }
 
-/** World units along two directions for a step of the pointer, where these show as `a` and `b` (pixels a unit); none if they show as one line. */
-export function inPlane(
-    step: { x: number; y: number },
-    a: { x: number; y: number },
-    b: { x: number; y: number },
-): [number, number] | undefined {
-    const area = a.x * b.y - a.y * b.x;
-    if (Math.abs(area) < 0.02 * Math.hypot(a.x, a.y) * Math.hypot(b.x, b.y) || area === 0) return undefined;
-    return [(step.x * b.y - step.y * b.x) / area, (a.x * step.y - a.y * step.x) / area];
+/** What is selected once the one of that kind and index is gone. */
+function without(selected: Selected | undefined, kind: 'box' | 'region', index: number): Selected | undefined {
+    const at = (selected as Partial<Record<'box' | 'region', number>> | undefined)?.[kind];
+    if (at === undefined || at < index) return selected;
+    return at === index ? undefined : kind === 'box' ? { box: at - 1 } : { region: at - 1 };
 }
-
-/** World units along one direction that shows as `a`. */
-export function along(step: { x: number; y: number }, a: { x: number; y: number }): number {
-    const square = a.x * a.x + a.y * a.y;
-    return square > 1e-12 ? (step.x * a.x + step.y * a.y) / square : 0;
-}
-

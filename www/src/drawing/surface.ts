@@ -1,4 +1,4 @@
-import type { Vector } from '../wasm/values.ts';
+import type { ScreenPolygon, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 import { Problem } from '../texts/message.ts';
 import type { Frames } from './frames.ts';
@@ -111,6 +111,12 @@ export class Surface {
         const ratio = this.isHeld ? Math.max(width / clientWidth, height / clientHeight) : this.pixelRatio;
         const [left, top] = this.isHeld ? [(clientWidth - width / ratio) / 2, (clientHeight - height / ratio) / 2] : [0, 0];
         return this.viewer.project(positions).map((at) => at && { x: left + at[0] / ratio, y: top + at[1] / ratio });
+    }
+
+    /** What a polygon on the picture reaches into. */
+    screenPolygon(corners: { x: number; y: number }[]): ScreenPolygon {
+        const ratio = this.pixelRatio;
+        return this.viewer.screenPolygon(corners.map(({ x, y }) => [x * ratio, y * ratio]));
     }
 
     /** The picture as it is, drawn once more: rows from the top, four bytes a pixel. */

@@ -41,7 +41,7 @@ export class Measuring extends EventTarget {
 
     /** Takes the tool in hand: the next clicks are points of a new measurement. */
     start(kind: MeasureKind): void {
-        this.finish();
+        this.model.putAway();
         const { texts } = this.model;
         const number = (this.numbers.get(kind) ?? 0) + 1;
         const name = texts.text('measure.numbered', { kind: texts.text(`measure.${kind}`), number: String(number) });

@@ -167,6 +167,16 @@ export const german = translation({
 
     'clip': 'Ausschnitte',
     'clip.new': 'Neuer Quader',
+    'clip.ground': 'Vieleck am Boden',
+    'clip.screen': 'Vieleck im Bild',
+    'clip.hintScreen':
+        'Ecken anklicken, oder das Kreuz mit den Pfeiltasten bewegen und mit der Leertaste setzen; Doppelklick oder Eingabe beendet, die Rücktaste nimmt die letzte zurück, Escape bricht ab.',
+    'clip.polygon': 'Vieleck {number}',
+    'clip.corridor': 'Korridor {number}',
+    'clip.heights': 'Höhen',
+    'clip.anyHeight': 'beliebig',
+    'clip.lowest': 'Kleinste Höhe von {name}',
+    'clip.highest': 'Größte Höhe von {name}',
     'clip.box': 'Quader {number}',
     'clip.edit': 'Griffe von {name}',
     'clip.handles': 'Griffe',

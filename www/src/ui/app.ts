@@ -1,5 +1,4 @@
 import './annotation_overlay.ts';
-import './clip_overlay.ts';
 import './control_panel.ts';
 import './legend_overlay.ts';
 import './loading_bar.ts';
@@ -66,7 +65,9 @@ export class App extends ModelElement {
     override render(): TemplateResult {
         const { model } = this;
         return html`<stipple-annotation-overlay .model=${model}></stipple-annotation-overlay>
-            <stipple-clip-overlay .model=${model}></stipple-clip-overlay>
+            ${model.clipping.isInUse && this.later.has('clips', () => import('./clip_overlay.ts'))
+                ? html`<stipple-clip-overlay .model=${model}></stipple-clip-overlay>`
+                : ''}
             <stipple-measure-overlay .model=${model}></stipple-measure-overlay>
             <stipple-loading .model=${model}></stipple-loading>
             ${this.hasControls ? this.renderPanels() : ''}

@@ -1,50 +1,34 @@
-import { css, html, svg, type SVGTemplateResult, type TemplateResult } from 'lit';
+import { html, svg, type SVGTemplateResult, type TemplateResult } from 'lit';
 
 import { axesOf, cornersOf, edges, headingOf, placeIn, withCentre, withFaceMoved, withHeading } from '../clipping/boxes.ts';
-import { along, inPlane } from '../clipping/clipping.ts';
+import { along, inPlane, type Place } from '../clipping/handles.ts';
 import type { ClipBox, Vector } from '../wasm/values.ts';
 import { OverlayElement } from './overlay_element.ts';
+import { clipStyles, RegionDrawing } from './region_drawing.ts';
 
-type Place = { x: number; y: number };
-
-/** Clip boxes over the picture; the one that is edited has handles: a side each, the middle moves it, the knob turns it. */
+/**
+ * Clip boxes and regions over the picture, and the polygon that is drawn. The box that is edited has handles: a side each, the
+ * middle moves it, the knob turns it.
+ */
 export class ClipOverlay extends OverlayElement {
     static override styles = [
         OverlayElement.overlayStyles,
-        css`
-            .edges {
-                fill: none;
-                stroke: #ffd479;
-                stroke-width: 1.5;
-                stroke-opacity: 0.55;
-            }
-            .selected .edges {
-                stroke-opacity: 1;
-            }
-            .handle {
-                fill: #ffd479;
-                stroke: rgb(0 0 0 / 0.6);
-                stroke-width: 1.5;
-                pointer-events: auto;
-                cursor: move;
-                touch-action: none;
-            }
-            .arm {
-                stroke: #ffd479;
-                stroke-dasharray: 3 3;
-            }
-        `,
+        clipStyles,
     ];
 
+    private readonly regions = new RegionDrawing(
+        () => this.model,
+        (event, follow) => this.followPointer(event, follow),
+    );
 
-    override render(): TemplateResult | string {
-        const { boxes } = this.model.clipping;
-        if (boxes.length === 0) return '';
-        return html`<svg aria-hidden="true">${boxes.map((box, index) => this.renderBox(box, index))}</svg>`;
+    override render(): TemplateResult {
+        return html`<svg aria-hidden="true" class=${this.model.tool ? 'drawing' : ''}>
+            ${this.model.clipping.boxes.map((box, index) => this.renderBox(box, index))} ${this.regions.render()}
+        </svg>`;
     }
 
     private renderBox(box: ClipBox, index: number): SVGTemplateResult {
-        const isSelected = this.model.clipping.selected === index;
+        const isSelected = this.model.clipping.isSelected({ box: index });
         const corners = this.model.surface.project(cornersOf(box));
         const line = edges
             .map(([a, b]) => [corners[a], corners[b]])

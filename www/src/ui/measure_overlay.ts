@@ -77,7 +77,7 @@ export class MeasureOverlay extends OverlayElement {
         let at = 0;
         const next = (count: number): (Place | null)[] => places.slice(at, (at += count));
         // While a tool is in hand, clicks are for points of the cloud, also where a handle is.
-        return html`<svg class=${this.model.measuring.isDrawing ? 'drawing' : ''}>
+        return html`<svg class=${this.model.tool ? 'drawing' : ''}>
             ${items.map((item) => this.renderItem(item, next(corners(item).length), next(circle(item).length)))}
         </svg>`;
     }

@@ -72,6 +72,7 @@ export interface ViewerProgram extends Program {
     _stipple_region_end(scan: number): void;
     _stipple_project(json: Address): Address;
     _stipple_load(): void;
+    _stipple_screen_polygon(json: Address): Address;
     _stipple_frame(): number;
     _stipple_frame_took(seconds: number): void;
     _stipple_refine_at_rest(): void;

@@ -47,6 +47,19 @@ export interface ClipBox {
     rotation?: [number, number, number, number];
 }
 
+/** What lies in a region (client/core/region_json.hpp) is hidden or highlighted. */
+export interface ClipRegion {
+    mode: ClipBox['mode'];
+    region: RegionOf;
+}
+
+/** A polygon on the screen, as what it reaches into: shared/geometry/screen_prism.hpp. */
+export interface ScreenPolygon {
+    eye: Vector | null;
+    forward: Vector;
+    corners: Vector[];
+}
+
 export interface Style {
     colourMode: ColourMode;
     gradient: 'viridis' | 'turbo' | 'inferno' | 'spectral' | 'grey' | 'terrain';
@@ -59,6 +72,7 @@ export interface Style {
     hiddenClasses: number[];
     filters: AttributeFilter[];
     clipBoxes: ClipBox[];
+    clipRegions: ClipRegion[];
     highlight: Vector;
     sizeMode: 'fixed' | 'world' | 'spacing' | 'adaptive';
     sizePixels: number;
@@ -212,10 +226,12 @@ export interface ViewCounts {
 }
 
 /** A region of a cloud: client/core/region_json.hpp. */
-export type RegionOf =
+export type RegionOf = (
     | { box: Omit<ClipBox, 'mode'> }
-    | { polygon: [number, number][]; heights?: [number, number] }
-    | { line: [number, number][]; width: number };
+    | { polygon: [number, number][]; holes?: [number, number][][] }
+    | { line: [number, number][]; width: number }
+    | { prism: ScreenPolygon }
+) & { heights?: [low: number | null, high: number | null] };
 export type RegionFormat = 'las' | 'laz' | 'csv';
 
 /** Corners, or the place, of what is measured: client/survey/measure_json.hpp. */

@@ -23,6 +23,7 @@ import type {
     Projection,
     RegionScan,
     RegionScanProgress,
+    ScreenPolygon,
     Style,
     Vector,
     ViewCounts,
@@ -240,6 +241,13 @@ export class Viewer {
     project(positions: Vector[]): (Vector | null)[] {
         return this.heap.lendTexts([JSON.stringify(positions)], (at) =>
             this.json<(Vector | null)[]>(this.program._stipple_project(at!)),
+        );
+    }
+
+    /** What a polygon on the present picture reaches into; corners in pixels of the canvas. */
+    screenPolygon(corners: [number, number][]): ScreenPolygon {
+        return this.heap.lendTexts([JSON.stringify(corners)], (at) =>
+            this.json<ScreenPolygon>(this.program._stipple_screen_polygon(at!)),
         );
     }
 
