@@ -48,6 +48,9 @@ Result<std::unique_ptr<PointTaker>> fileTaker(const Metadata& metadata, const Cl
 Result<std::unique_ptr<PointTaker>> profileTaker(const Metadata& metadata, const CloudFilter& filter,
                                                  std::shared_ptr<Pieces> pieces);
 
+// How many there are: "points", as every work says.
+std::unique_ptr<PointTaker> countTaker();
+
 // Cut and fill within a polygon (client/survey/volumes.hpp). Fields: "points": corners as measuring has them
 // (client/survey/measure_json.hpp), "geocentric", "base": "rim" or {"height": z} or {"point": […as one of
 // points]}, a level plane there; "cell": side of the cells, absent: twice the mean distance of the points.

@@ -14,6 +14,8 @@ Result<std::unique_ptr<PointTaker>> takerFor(const std::string& make, const Meta
                                              const std::shared_ptr<Pieces>& pieces) {
     if (make == "file")
         return fileTaker(metadata, filter, request, pieces);
+    if (make == "count")
+        return countTaker();
     return make == "profile" ? profileTaker(metadata, filter, pieces) : volumeTaker(metadata, request);
 }
 
@@ -31,8 +33,9 @@ Result<std::unique_ptr<RegionWork>> RegionWork::make(std::shared_ptr<const Cloud
     std::unique_ptr<RegionWork> work(new RegionWork());
     work->metadata_ = std::move(metadata);
     std::string make = textField(request, "make");
-    if (make != "file" && make != "profile" && make != "volume")
-        return Error{ErrorCode::invalidArgument, "'make' must be file, profile or volume", "region", ""};
+    if (make != "file" && make != "profile" && make != "volume" && make != "count")
+        return Error{ErrorCode::invalidArgument, "'make' must be file, profile, volume or count", "region",
+                     ""};
     json region = request.contains("region") ? request["region"] : json::object();
     if (make == "volume") {
         STIPPLE_TRY(column, volumeRegion(request));

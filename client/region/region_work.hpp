@@ -1,7 +1,7 @@
 // The work that is done with a region's points, apart from reading them: a worker of the page runs it on the
 // nodes that a scan (client/core/region_scan.hpp) delivers.
 //
-//   {"make": "file" | "profile" | "volume", "region": {…}, …}
+//   {"make": "file" | "profile" | "volume" | "count", "region": {…}, …}
 //
 // Regions are those of client/core/region_json.hpp; further fields, and what comes of them, those of
 // point_taker.hpp. A volume makes its region itself.

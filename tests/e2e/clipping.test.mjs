@@ -10,7 +10,7 @@ import { stipple } from './support/program.mjs';
 import { keepScreenshot, readPixels, settle } from './support/browser.mjs';
 import { dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
-let town, page, complaints;
+let town, page, complaints, pointsInside;
 
 before(async () => {
     town = await openTownPage({ width: 1000, height: 640 });
@@ -132,6 +132,37 @@ describe('clip boxes', () => {
         console.log(`  ${inside.length} of ${all.length} points are inside`);
         assert.ok(inside.length > 1000);
         assert.deepEqual(text(inside), text(expected));
+        pointsInside = inside.length;
+    });
+
+    test('measured, a box says its sizes and how many points are in it; so do the files', async () => {
+        await page.getByRole('button', { name: 'Measure Box 1' }).click();
+        await page.waitForFunction(() => window.stipple.measurements()[0]?.answer);
+        const { centre, halfSize, axes } = await box();
+        const sizes = halfSize.map((half) => 2 * half);
+        const [measured] = await page.evaluate(() => window.stipple.measurements());
+        const { width, depth, height, volume } = measured.answer;
+        assert.deepEqual([width, depth, height, volume], [...sizes, sizes[0] * sizes[1] * sizes[2]]);
+        assert.equal(measured.answer.pointsInside, pointsInside);
+        const field = (name) => page.locator(`[data-measurement=box] [data-field=${name}]`).textContent();
+        assert.match(await field('volume'), /m³/);
+        assert.equal((await field('pointsInside')).replaceAll(/\D/g, ''), String(pointsInside));
+        const file = async (label) => {
+            const [download] = await Promise.all([
+                page.waitForEvent('download'),
+                page.locator('stipple-measure').getByRole('button', { name: label, exact: true }).click(),
+            ]);
+            return readFile(await download.path(), 'utf8');
+        };
+        const [json] = JSON.parse(await file('JSON')).measurements;
+        assert.deepEqual([json.kind, json.box, json.result.pointsInside], ['box', { centre, halfSize, axes }, pointsInside]);
+        assert.match(await file('CSV'), new RegExp(`\r\nBox volume 1,box,.*,${pointsInside},`));
+        const [{ properties, geometry }] = JSON.parse(await file('GeoJSON')).features;
+        assert.deepEqual([properties.volume, geometry.type, geometry.coordinates[0].length], [volume, 'Polygon', 5]);
+        const dxf = (await file('DXF')).split('\r\n');
+        assert.equal(dxf.filter((line) => line === 'LINE').length, 12);
+        await page.getByRole('button', { name: 'Delete Box volume 1' }).click();
+        assert.equal((await page.evaluate(() => window.stipple.measurements())).length, 0);
         await page.getByRole('button', { name: 'Delete Box 1' }).click();
         assert.equal(await box(), undefined);
         assert.equal(await page.locator('stipple-clip-overlay g').count(), 0);

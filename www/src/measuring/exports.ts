@@ -1,6 +1,8 @@
+import { edges } from '../clipping/boxes.ts';
 import type { Vector } from '../wasm/values.ts';
 import type { ExportFormat, LonLats } from './export_formats.ts';
 import { kindOf, type Measurement, type VolumeBase } from './measurement.ts';
+import { outlineOf } from './outline.ts';
 
 /** `lonLats` of every point: what GeoJSON is in where they are known. */
 export function exportText(items: Measurement[], format: ExportFormat, lonLats?: LonLats): string {
@@ -31,6 +33,7 @@ function asJson(items: Measurement[]): string {
             index: point.index,
         })),
         ...(item.base && { base: baseOf(item.base) }),
+        ...(item.box && { box: item.box }),
         ...(item.answer && { result: item.answer }),
         ...(item.error && { error: item.error }),
     }));
@@ -83,7 +86,7 @@ function asGeoJson(items: Measurement[], lonLats?: LonLats): string {
             ...numbersOf(item),
             ...(lonLats && { crs: item.points[0]!.crs, epsg: item.points[0]!.epsg, coordinates: positions(item) }),
         },
-        geometry: geometryOf(item, lonLats ? item.points.map((point) => lonLats.get(point)!) : positions(item)),
+        geometry: geometryOf(item, outlineOf(item).map((point) => lonLats?.get(point) ?? point.position)),
     }));
     return `${JSON.stringify({
         type: 'FeatureCollection',
@@ -94,7 +97,7 @@ function asGeoJson(items: Measurement[], lonLats?: LonLats): string {
 
 function geometryOf(item: Measurement, places: number[][]): object {
     if (places.length === 1) return { type: 'Point', coordinates: places[0] };
-    if (kindOf(item.kind).isClosed && places.length > 2)
+    if ((kindOf(item.kind).isClosed || item.box) && places.length > 2)
         return { type: 'Polygon', coordinates: [counterClockwise([...places, places[0]!])] };
     return { type: 'LineString', coordinates: places };
 }
@@ -117,6 +120,10 @@ function asDxf(items: Measurement[]): string {
         const places = positions(item);
         const text = group(0, 'TEXT') + layer + place(places[0]!) + group(40, 1) + group(1, dxfText(item.name));
         if (places.length === 1) return group(0, 'POINT') + layer + place(places[0]!) + text;
+        if (item.box) {
+            const end = ([x, y, z]: Vector): string => group(11, x) + group(21, y) + group(31, z);
+            return edges.map(([a, b]) => group(0, 'LINE') + layer + place(places[a]!) + end(places[b]!)).join('') + text;
+        }
         const closed = kindOf(item.kind).isClosed ? 1 : 0;
         const vertices = places.map((at) => group(0, 'VERTEX') + layer + place(at) + group(70, 32));
         return (

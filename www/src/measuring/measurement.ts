@@ -1,5 +1,5 @@
 import type { Texts } from '../texts/texts.ts';
-import type { MeasureAnswer, MeasureKind, MeasureRequest, PlacedPoint } from '../wasm/values.ts';
+import type { ClipBox, MeasureAnswer, MeasureKind, MeasureRequest, PlacedPoint } from '../wasm/values.ts';
 
 /** Something that was measured: exact points of clouds, and what client/survey says of them. */
 export interface Measurement {
@@ -14,15 +14,21 @@ export interface Measurement {
     error?: string;
     /** Of a volume: what heights are taken from. */
     base?: VolumeBase;
-    /** Of a volume whose points are being read: 0..1. */
+    /** Of a box, whose corners are its points (in the order of clipping/boxes.ts). */
+    box?: MeasuredBox;
+    /** Of a volume or a box whose points are being read: 0..1. */
     share?: number;
 }
 
 /** The plane through its corners' triangles; a level one at a height of the cloud's, or at a point that was picked. */
 export type VolumeBase = { from: 'rim' } | { from: 'height'; height: number } | { from: 'point'; point: PlacedPoint };
 
+export type MeasuredBox = Omit<ClipBox, 'mode'>;
+
 export interface KindOfMeasurement {
     kind: MeasureKind;
+    /** No tool picks its points: it is made of something else. */
+    isMade?: boolean;
     /** With so many points it is complete; none: as many as the person wants. */
     points?: number;
     least: number;
@@ -38,6 +44,7 @@ export const kindsOfMeasurement: KindOfMeasurement[] = [
     { kind: 'azimuth', least: 2, points: 2 },
     { kind: 'point', least: 1, points: 1 },
     { kind: 'volume', least: 3, isClosed: true },
+    { kind: 'box', least: 8, points: 8, isMade: true },
 ];
 
 export function kindOf(kind: MeasureKind): KindOfMeasurement {

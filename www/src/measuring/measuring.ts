@@ -1,7 +1,7 @@
 import type { Model } from '../model.ts';
 import type { MeasureKind, PlacedPoint } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
-import { kindOf, type Measurement, obstacleOf, requestOf, type VolumeBase } from './measurement.ts';
+import { kindOf, type MeasuredBox, type Measurement, obstacleOf, requestOf, type VolumeBase } from './measurement.ts';
 import type { DisplayUnit } from './units.ts';
 import { Volumes } from './volumes.ts';
 
@@ -42,10 +42,15 @@ export class Measuring extends EventTarget {
     /** Takes the tool in hand: the next clicks are points of a new measurement. */
     start(kind: MeasureKind): void {
         this.model.putAway();
-        const { texts } = this.model;
-        const number = (this.numbers.get(kind) ?? 0) + 1;
-        const name = texts.text('measure.numbered', { kind: texts.text(`measure.${kind}`), number: String(number) });
-        this.drawn = { id: ++this.lastId, kind, name, hidden: false, points: [] };
+        this.drawn = this.made(kind);
+        this.changed();
+    }
+    /** A box with its corners. */
+    addBox(points: PlacedPoint[], box: MeasuredBox): void {
+        const item = { ...this.made('box'), points, box };
+        this.count(item.kind);
+        this.items = [...this.items, item];
+        this.measure(item);
         this.changed();
     }
 
@@ -86,7 +91,7 @@ export class Measuring extends EventTarget {
         if (samePoint(item.points.at(-1), point)) return; // the second click of a double click
         if (item.points.length === 0) {
             this.items = [...this.items, item];
-            this.numbers.set(item.kind, (this.numbers.get(item.kind) ?? 0) + 1);
+            this.count(item.kind);
         }
         item.points = [...item.points, point];
         this.measure(item);
@@ -161,7 +166,7 @@ export class Measuring extends EventTarget {
     }
 
     /** Takes the place of what was measured. */
-    replace(items: Pick<Measurement, 'kind' | 'name' | 'hidden' | 'points' | 'base'>[]): void {
+    replace(items: Pick<Measurement, 'kind' | 'name' | 'hidden' | 'points' | 'base' | 'box'>[]): void {
         this.drawn = undefined;
         this.based = undefined;
         this.items.forEach((item) => this.volumes.stop(item));
@@ -191,6 +196,15 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
+    private made(kind: MeasureKind): Measurement {
+        const { texts } = this.model, number = String((this.numbers.get(kind) ?? 0) + 1);
+        const name = texts.text('measure.numbered', { kind: texts.text(`measure.${kind}`), number });
+        return { id: ++this.lastId, kind, name, hidden: false, points: [] };
+    }
+    private count(kind: MeasureKind): void {
+        this.numbers.set(kind, (this.numbers.get(kind) ?? 0) + 1);
+    }
+
     private async pick(x: number, y: number, radius?: number): Promise<PlacedPoint | null> {
         try {
             return await this.model.picking.pick(x, y, radius);
@@ -209,7 +223,7 @@ export class Measuring extends EventTarget {
         const obstacle = obstacleOf(item, this.model.texts);
         try {
             if (obstacle) item.error = obstacle;
-            else if (item.kind === 'volume') {
+            else if (item.kind === 'volume' || item.kind === 'box') {
                 if (this.drawn !== item) void this.volumes.measure(item);
             }
             else item.answer = this.model.measure(requestOf(item));

@@ -16,8 +16,8 @@ export interface ResultLine {
     deviation?: string;
 }
 
-/** What is shown of each kind, the most wanted first; 0: degrees, 1 to 3: powers of the unit of length. */
-const fields: Record<MeasureKind, [field: string, name: ResultKey, power: number][]> = {
+/** What is shown of each kind, the most wanted first; 0: degrees, 1 to 3: powers of the unit of length, 'count': a number of things. */
+const fields: Record<MeasureKind, [field: string, name: ResultKey, power: number | 'count'][]> = {
     point: [],
     distance: [
         ['distance', 'result.distance', 1],
@@ -48,6 +48,13 @@ const fields: Record<MeasureKind, [field: string, name: ResultKey, power: number
         ['areaWithoutPoints', 'result.areaWithoutPoints', 2],
         ['cell', 'result.cell', 1],
     ],
+    box: [
+        ['volume', 'result.volume', 3],
+        ['width', 'result.width', 1],
+        ['depth', 'result.depth', 1],
+        ['height', 'result.height', 1],
+        ['pointsInside', 'result.pointsInside', 'count'],
+    ],
     circle: [
         ['radius', 'result.radius', 1],
         ['diameter', 'result.diameter', 1],
@@ -68,6 +75,7 @@ export function resultLines(measurement: Measurement, unit: DisplayUnit, texts: 
     return fields[kind].flatMap(([field, name, power]) => {
         const value = answer[field], deviation = answer[`±${field}`];
         if (typeof value !== 'number') return [];
+        if (power === 'count') return { name: texts.text(name), field, value: texts.count(value) };
         const shown = (number: number): number => (power === 0 ? number : inUnit(number, power, points[0]!, unit));
         const symbol = power === 0 ? '°' : ` ${unitSymbol(power, points[0]!, unit)}`;
         const off = typeof deviation === 'number' && deviation > 0 ? shown(deviation) : undefined;

@@ -1,12 +1,12 @@
 import type { Model } from '../model.ts';
-import type { MeasureAnswer, PlacedPoint, RegionRequest, RequestPoint } from '../wasm/values.ts';
+import type { MeasureAnswer, PlacedPoint, RegionAnswer, RegionRequest, RequestPoint, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
-import type { Measurement } from './measurement.ts';
+import type { MeasuredBox, Measurement } from './measurement.ts';
 
 /** A person who drags a corner is not yet where it is to be. */
 const pauseMs = 250;
 
-/** Measures cut and fill, which takes all points of a polygon: one after the other, each given up when it is asked for anew. */
+/** Measures what takes all points of a place, cut and fill over a polygon and what is in a box; each is given up when it is asked for anew. */
 export class Volumes {
     private readonly running = new Map<Measurement, AbortController>();
 
@@ -25,22 +25,49 @@ export class Volumes {
         try {
             await new Promise((resolve) => setTimeout(resolve, pauseMs));
             if (abort.signal.aborted) return;
-            const { workOnRegion } = await import('../regions/region_work.ts'); // loaded when it is first wanted
-            const made = await workOnRegion(this.model, this.viewer, item.points[0]!.point.cloud, requestOf(item), {
-                signal: abort.signal,
-                progress: ({ share }) => {
-                    item.share = share;
-                    this.changed();
-                },
-            });
-            if (!made || abort.signal.aborted) return;
-            item.answer = made.answer as MeasureAnswer;
+            const answer = item.box ? await this.inBox(item, item.box, abort.signal) : await this.cutAndFill(item, abort.signal);
+            if (!answer || abort.signal.aborted) return;
+            item.answer = answer;
         } catch (error) {
             if (abort.signal.aborted) return;
             item.error = this.model.texts.sentenceOf(error);
         }
         this.stop(item);
         this.changed();
+    }
+
+    private async cutAndFill(item: Measurement, signal: AbortSignal): Promise<MeasureAnswer | undefined> {
+        const made = await this.work(item, item.points[0]!.point.cloud, requestOf(item), signal);
+        return made as MeasureAnswer | undefined;
+    }
+
+    /** Its points are those of all clouds that are shown. */
+    private async inBox(item: Measurement, box: MeasuredBox, signal: AbortSignal): Promise<MeasureAnswer | undefined> {
+        const [width, depth, height] = box.halfSize.map((half) => 2 * half) as Vector;
+        let pointsInside = 0;
+        for (const { id } of this.model.clouds.filter(({ visible, stage }) => visible && stage === 'ready')) {
+            const made = await this.work(item, id, { make: 'count', region: { box } }, signal);
+            if (!made) return undefined;
+            pointsInside += Number(made['points']);
+        }
+        return { kind: 'box', width, depth, height, volume: width * depth * height, pointsInside };
+    }
+
+    private async work(
+        item: Measurement,
+        cloud: number,
+        request: RegionRequest,
+        signal: AbortSignal,
+    ): Promise<RegionAnswer | undefined> {
+        const { workOnRegion } = await import('../regions/region_work.ts'); // loaded when it is first wanted
+        const made = await workOnRegion(this.model, this.viewer, cloud, request, {
+            signal,
+            progress: ({ share }) => {
+                item.share = share;
+                this.changed();
+            },
+        });
+        return made?.answer;
     }
 
     /** Nothing more is wanted of it. */

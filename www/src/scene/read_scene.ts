@@ -1,7 +1,7 @@
 import type { Annotation } from '../annotations/annotation.ts';
-import { kindsOfMeasurement, kindOf, type VolumeBase } from '../measuring/measurement.ts';
+import { kindsOfMeasurement, kindOf, type MeasuredBox, type VolumeBase } from '../measuring/measurement.ts';
 import { displayUnits } from '../measuring/units.ts';
-import type { Bounds, Camera, Keyframe, Limits, PlacedPoint, Style } from '../wasm/values.ts';
+import type { Bounds, Camera, Keyframe, Limits, PlacedPoint, Style, Vector } from '../wasm/values.ts';
 import { Problem } from '../texts/message.ts';
 import { mostKeyframes } from '../navigation/film.ts';
 import type { ProfileSetting } from '../profile/profile.ts';
@@ -96,6 +96,7 @@ function readMeasurement(value: unknown, path: string): SceneMeasurement {
         name: fields.text('name', ''),
         hidden: fields.flag('hidden', false),
         points: fields.list('points', 10_000, readPoint),
+        ...(kind === 'box' && { box: readBox(fields.object('box'), `${path}.box`) }),
         ...(kind === 'volume' && { base: readBase(fields.optionalObject('base') ?? { from: 'rim' }, `${path}.base`) }),
     };
     fields.finish();
@@ -103,6 +104,18 @@ function readMeasurement(value: unknown, path: string): SceneMeasurement {
     if (count < least) throw new Problem('scene.fewPoints', { place: path, kind, number: count });
     if (points !== undefined && count > points) throw new Problem('scene.manyPoints', { place: path, kind, number: count });
     return measurement;
+}
+
+function readBox(value: unknown, path: string): MeasuredBox {
+    const fields = FieldReader.of(value, path);
+    const box: MeasuredBox = {
+        centre: fields.vector('centre'),
+        halfSize: fields.vector('halfSize', (half) => half >= 0),
+        axes: fields.list('axes', 3, (axis, at) => FieldReader.of({ axis }, at).vector('axis')) as [Vector, Vector, Vector],
+    };
+    fields.finish();
+    if (box.axes!.length !== 3) throw new Problem('scene.mustBeVector', { place: `${path}.axes` });
+    return box;
 }
 
 function readBase(value: unknown, path: string): VolumeBase {

@@ -1,5 +1,5 @@
 import type { Annotation } from '../annotations/annotation.ts';
-import type { Measurement, VolumeBase } from '../measuring/measurement.ts';
+import type { MeasuredBox, Measurement, VolumeBase } from '../measuring/measurement.ts';
 import type { DisplayUnit } from '../measuring/units.ts';
 import type { NavigationMode } from '../navigation/navigator.ts';
 import type { ProfileSetting } from '../profile/profile.ts';
@@ -29,6 +29,8 @@ export interface SceneMeasurement {
     points: PlacedPoint[];
     /** Of a volume. */
     base?: VolumeBase;
+    /** Of a box, whose corners are the points. */
+    box?: MeasuredBox;
 }
 
 export interface Scene {
@@ -63,11 +65,11 @@ export function differences<T extends object>(value: T, defaults: T): Partial<T>
 }
 
 export function sceneMeasurement(item: Measurement, indexOfCloud: (id: number) => number): SceneMeasurement {
-    const { kind, name, hidden, base } = item;
+    const { kind, name, hidden, base, box } = item;
     const placed = (point: PlacedPoint): PlacedPoint => placedIn(point, indexOfCloud);
     const ofVolume: VolumeBase | undefined = base ?? (kind === 'volume' ? { from: 'rim' } : undefined);
     const stored: VolumeBase | undefined = ofVolume?.from === 'point' ? { from: 'point', point: placed(ofVolume.point) } : ofVolume;
-    return { kind, name, hidden, points: item.points.map(placed), ...(stored && { base: stored }) };
+    return { kind, name, hidden, points: item.points.map(placed), ...(stored && { base: stored }), ...(box && { box }) };
 }
 
 /** Without what a picked point says beyond its place. */

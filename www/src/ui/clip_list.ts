@@ -2,6 +2,7 @@ import { css, html, type TemplateResult } from 'lit';
 
 import { headingOf, regionOf, withCentre, withHeading, withSize } from '../clipping/boxes.ts';
 import type { Selected } from '../clipping/clipping.ts';
+import { measuredBox } from '../clipping/measured_box.ts';
 import { pointsAddress, withHeight } from '../clipping/regions.ts';
 import type { ClipBox, ClipRegion, RegionFormat, RegionOf, Vector } from '../wasm/values.ts';
 import { select } from './fields.ts';
@@ -64,7 +65,7 @@ export class ClipList extends ModelElement {
                 margin-inline-start: 0.4rem;
             }
             .files button {
-                min-height: 1.5rem;
+                min-height: 1.8rem;
                 padding: 0 0.4rem;
                 font-size: 0.8rem;
             }
@@ -99,7 +100,12 @@ export class ClipList extends ModelElement {
             ${heading === undefined
                 ? html`<p class="files">${this.text('clip.turned')}</p>`
                 : this.renderNumbers(this.text('clip.heading'), name, [heading], (_, value) => change(withHeading(box, value)))}
-            <p class="files" data-volume>${this.text('clip.volume', { volume: this.volumeOf(box) })}</p>
+            <p class="files" data-volume>
+                ${this.text('clip.volume', { volume: this.volumeOf(box) })}
+                <button aria-label=${this.text('clip.measureNamed', { name })} @click=${() => this.measure(box)}>
+                    ${this.text('clip.measure')}
+                </button>
+            </p>
             ${this.renderFiles(regionOf(box), `box ${index}`, name)}
         </li>`;
     }
@@ -192,6 +198,15 @@ export class ClipList extends ModelElement {
         </div>`;
     }
 
+    /** Into the list of what was measured, with the number of points inside. */
+    private measure(clip: ClipBox): void {
+        try {
+            const { points, box } = measuredBox(this.model, clip);
+            this.model.measuring.addBox(points, box);
+        } catch (error) {
+            this.model.tell(error);
+        }
+    }
     private volumeOf({ halfSize: [x, y, z] }: ClipBox): string {
         const volume = 8 * x * y * z;
         return this.texts.decimals(volume, volume >= 1000 ? 1 : 4);

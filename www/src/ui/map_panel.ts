@@ -7,6 +7,7 @@ import { boxCorners, convexHull, footprint, movedTo, viewCone } from '../map/pla
 import type { LonLat } from '../map/projection.ts';
 import type { BaseLayer, MapShape } from '../map/shapes.ts';
 import { kindOf } from '../measuring/measurement.ts';
+import { outlineOf } from '../measuring/outline.ts';
 import type { CloudState, Vector } from '../wasm/values.ts';
 import { ModelElement } from './model_element.ts';
 import { panelHead } from './panel_head.ts';
@@ -225,8 +226,8 @@ export class MapPanel extends ModelElement {
         return this.model.measuring.items
             .filter(({ hidden, points }) => !hidden && points.length > 0)
             .flatMap((item): MapShape[] => {
-                const places = this.inWorld(item.points.map(({ position }) => position));
-                const isPolygon = kindOf(item.kind).isClosed && places.length > 2;
+                const places = this.inWorld(outlineOf(item).map(({ position }) => position));
+                const isPolygon = (kindOf(item.kind).isClosed || item.box) && places.length > 2;
                 const geometry = places.length === 1 ? 'point' : isPolygon ? 'polygon' : 'line';
                 return places.length > 0 ? [{ kind: 'measurement', geometry, places, name: item.name }] : [];
             });

@@ -84,14 +84,14 @@ export class MeasureOverlay extends OverlayElement {
 
     private renderItem(item: Measurement, points: (Place | null)[], ring: (Place | null)[]): SVGTemplateResult {
         const closed = (kindOf(item.kind).isClosed ?? false) && points.length > 2;
-        const line = ring.length > 0 ? path(ring, true) : path(points, closed);
+        const line = ring.length > 0 ? path(ring, true) : item.box ? boxPath(points) : path(points, closed);
         const stop = Math.min(this.stops.get(item) ?? 0, points.length - 1), { isDrawing } = this.model.measuring;
         return svg`<g data-kind=${item.kind}>
             ${closed && points.every(Boolean) ? svg`<path class="inside" d=${line}></path>` : ''}
             <path class="under" d=${line}></path>
             <path class="line" d=${line}></path>
             ${points.map((place, index) =>
-                place
+                place && !item.box
                     ? svg`<circle class="handle" cx=${place.x} cy=${place.y} r="5" role="button"
                         tabindex=${index === stop && !isDrawing ? 0 : -1}
                         aria-label=${this.text('measure.handle', { number: index + 1, name: item.name })}
@@ -191,6 +191,13 @@ function path(places: (Place | null)[], closed: boolean): string {
         return step;
     });
     return steps.join('') + (closed && places.every(Boolean) ? 'Z' : '');
+}
+
+/** The edges between the corners of a box: two whose numbers differ in one bit. */
+function boxPath(corners: (Place | null)[]): string {
+    return corners
+        .flatMap((from, at) => [1, 2, 4].map((bit) => (at & bit ? '' : path([from, corners[at | bit] ?? null], false))))
+        .join('');
 }
 
 customElements.define('stipple-measure-overlay', MeasureOverlay);

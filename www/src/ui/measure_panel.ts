@@ -122,7 +122,7 @@ export class MeasurePanel extends ModelElement {
                 @keydown=${followToolbarKeys}
                 @focusin=${keepToolbarStop}
             >
-                ${kindsOfMeasurement.map(
+                ${kindsOfMeasurement.filter(({ isMade }) => !isMade).map(
                     ({ kind }, index) =>
                         html`<button
                             tabindex=${stopOf(index)}

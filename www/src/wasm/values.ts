@@ -241,6 +241,7 @@ export type RequestPoint = Pick<PlacedPoint, 'integers' | 'scale' | 'offset' | '
 export type RegionRequest =
     | { make: 'file'; format: RegionFormat; region: RegionOf; attributes?: string[]; mostPoints?: number }
     | { make: 'profile'; region: RegionOf; mostPoints?: number }
+    | { make: 'count'; region: RegionOf }
     | {
           make: 'volume';
           points: RequestPoint[];
@@ -292,7 +293,7 @@ export interface PickedPoint extends PlacedPoint {
     distance: number;
 }
 
-export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle' | 'volume';
+export type MeasureKind = 'point' | 'distance' | 'height' | 'azimuth' | 'angle' | 'area' | 'circle' | 'volume' | 'box';
 
 /** client/survey/measure_json.hpp. */
 export interface MeasureRequest {

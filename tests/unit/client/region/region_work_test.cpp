@@ -246,6 +246,13 @@ TEST_CASE("a volume counts the points inside its polygon, above and below its ba
     CHECK(rim["area"].get<double>() == Approx(area).epsilon(1e-9));
 }
 
+TEST_CASE("the points of a region are counted, and nothing is read of them but where they are") {
+    auto work = need(RegionWork::make(metadata(), {{"make", "count"}, {"region", box}}));
+    CHECK(work->attributesToRead(true).empty());
+    CHECK(make({{"make", "count"}, {"region", box}}).answer["points"] == rowsInside("Red").size());
+    CHECK(make({{"make", "count"}, {"region", json::object()}}).answer["points"] == all().steps.size());
+}
+
 TEST_CASE("what can't be made is said before anything is read") {
     auto refused = [](const json& request) {
         auto work = RegionWork::make(metadata(), request);
