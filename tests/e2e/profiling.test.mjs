@@ -62,7 +62,58 @@ describe('profiles', () => {
         const turn = line[1];
         for (const p of corner) assert.ok(Math.hypot(p.X - turn[0], p.Y - turn[1]) <= 2 * width, JSON.stringify(p));
         assert.ok(rows.length > 100);
+    });
+
+    test('it is coloured by class, height, return and intensity; the picture highlights its corridor, or shows it alone', async () => {
+        const choose = (label, option) => panel().getByLabel(label).selectOption({ label: option });
+        /** The colours of its pixels, as 'r,g,b', and how high up each first comes. */
+        const pixels = async () => {
+            await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+            return panel().locator('canvas').evaluate((canvas) => {
+                const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d'), found = {};
+                copy.drawImage(canvas, 0, 0); // of its own: browsers warn of canvases that are read again and again
+                const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+                for (let at = 0; at < data.length; at += 4)
+                    if (data[at + 3] > 0) found[data.slice(at, at + 3).join()] ??= Math.floor(at / 4 / canvas.width);
+                return found;
+            });
+        };
+        const rows = await rowsOf(await panel().getByRole('link', { name: 'CSV' }).getAttribute('href'));
+        const classes = (await page.evaluate(() => window.stipple.clouds()))[0].classes;
+        await choose('Colour', 'Classification');
+        const there = new Set(rows.map((row) => String(classes.find((one) => one.class === row.Classification).colour)));
+        assert.deepEqual(new Set(Object.keys(await pixels())), there);
+        await choose('Colour', 'Return number');
+        const returns = new Set(rows.map((row) => row['Return Number']));
+        assert.equal(Object.keys(await pixels()).length, returns.size);
+        await choose('Colour', 'Intensity');
+        assert.ok(Object.keys(await pixels()).length > 30);
+        await choose('Colour', 'Elevation'); // the gradient's ends are the lowest and the highest points
+        const heights = Object.entries(await pixels()).sort((a, b) => a[1] - b[1]);
+        const [r, g, b] = heights[0][0].split(',').map(Number);
+        assert.ok(r > 200 && g > 200 && b < 90, heights[0][0]); // viridis ends in yellow
+        await choose('Colour', 'RGB');
+
+        await page.evaluate(() => window.stipple.setLimits({ minNodePixels: 1, pointBudget: 1_000_000 }));
+        const shown = async () => {
+            await page.evaluate(() => window.stipple.settled());
+            const { frame } = await page.evaluate(() => window.stipple.counters());
+            return frame.pointsDrawn - frame.pointsHidden;
+        };
+        const all = await shown();
+        await choose('In the picture', 'Highlight');
+        assert.equal(await shown(), all);
+        const regions = async () => (await page.evaluate(() => window.stipple.style())).clipRegions;
+        assert.equal((await regions())[0].mode, 'highlight');
         await keepScreenshot(page, 'profile');
+        await page.locator('canvas').first().focus();
+        await page.keyboard.press('f');
+        await page.waitForTimeout(1200);
+        await choose('In the picture', 'alone');
+        assert.equal(await shown(), rows.length);
+        await choose('In the picture', 'as it is');
+        assert.deepEqual(await regions(), []);
+        await choose('In the picture', 'alone');
     });
 
     test('points are picked and measured in it; dragging, the wheel and the exaggeration move the view', async () => {
@@ -124,6 +175,7 @@ describe('profiles', () => {
         await page.getByRole('button', { name: 'Close the profile' }).click();
         await page.waitForTimeout(500);
         assert.equal(await panel().count(), 0);
+        assert.deepEqual((await page.evaluate(() => window.stipple.style())).clipRegions, []);
         assert.deepEqual(complaints, []);
     });
 });

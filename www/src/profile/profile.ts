@@ -1,9 +1,9 @@
 import type { Model } from '../model.ts';
 import { reasonOf } from '../problem_document.ts';
 import { Problem } from '../texts/message.ts';
-import type { CloudState, RegionOf, Vector } from '../wasm/values.ts';
+import type { ClipRegion, CloudState, RegionOf, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
-import { ProfilePoints, readProfile } from './profile_points.ts';
+import { profileAttributes, ProfilePoints, readProfile } from './profile_points.ts';
 
 /** Points a metre of the line, roughly, at the first look; each further look has four times as many, the last has all. */
 const firstLook = 300;
@@ -59,7 +59,7 @@ export class Profile extends EventTarget {
         this.show({ line, width: Number((length / 50).toPrecision(1)) || 1, exaggeration: this.exaggeration });
     }
     show({ line, width, exaggeration }: ProfileSetting): void {
-        Object.assign(this, { line, width, exaggeration, length: lengthOf(line) });
+        this.move(() => Object.assign(this, { line, width, exaggeration, length: lengthOf(line) }));
         void this.load();
     }
     setting(): ProfileSetting | undefined {
@@ -68,6 +68,7 @@ export class Profile extends EventTarget {
     }
     close(): void {
         this.abort?.abort();
+        if (this.corridor && !this.model.isDisposed) this.showCorridor();
         this.line = [];
         this.points = new ProfilePoints();
         this.changed();
@@ -77,8 +78,29 @@ export class Profile extends EventTarget {
     }
     setWidth(width: number): void {
         if (!(width > 0) || !Number.isFinite(width)) return;
-        this.width = width;
+        this.move(() => (this.width = width));
         void this.load();
+    }
+
+    /** How it shows in the picture: a clip region of the style that has its line and width. */
+    get corridor(): ClipRegion | undefined {
+        return this.model.clipping.regions.find((clip) => this.isCorridor(clip));
+    }
+    /** What else it does there; nothing without a mode. */
+    showCorridor(mode?: ClipRegion['mode']): void {
+        const others = this.model.clipping.regions.filter((clip) => !this.isCorridor(clip));
+        this.model.changeStyle({ clipRegions: mode ? [...others, { mode, region: this.region }] : others });
+    }
+    /** What shows of it in the picture goes along. */
+    private move(change: () => void): void {
+        const mode = this.isOpen ? this.corridor?.mode : undefined;
+        if (mode) this.showCorridor();
+        change();
+        if (mode) this.showCorridor(mode);
+    }
+    private isCorridor({ region }: ClipRegion): boolean {
+        const line = this.line.map(([x, y]) => [x, y]);
+        return 'line' in region && region.width === this.width && JSON.stringify(region.line) === JSON.stringify(line);
     }
 
     /** Of each cloud that this page's server has: the profile's address. */
@@ -188,7 +210,7 @@ export class Profile extends EventTarget {
 
     private attributesOf(name: string): string {
         const has = this.model.clouds.find((cloud) => cloud.name === name)?.attributes ?? [];
-        const wanted = ['Red', 'Green', 'Blue', 'Classification'].filter((attribute) => has.includes(attribute));
+        const wanted = profileAttributes.filter((attribute) => has.includes(attribute));
         return wanted.length > 0 ? wanted.join(',') : 'none';
     }
 

@@ -1,5 +1,20 @@
 import { Problem } from '../texts/message.ts';
 
+export interface ProfileRow {
+    station: number;
+    offset: number;
+    x: number;
+    y: number;
+    z: number;
+    colour: number;
+    class: number;
+    return: number;
+    intensity: number;
+}
+
+/** What the server is asked for of a cloud that has it. */
+export const profileAttributes = ['Red', 'Green', 'Blue', 'Classification', 'Return Number', 'Intensity'];
+
 /** Points of a profile, column by column; `colour`: 0xAABBGGRR, as a canvas has it. */
 export class ProfilePoints {
     count = 0;
@@ -10,8 +25,10 @@ export class ProfilePoints {
     y = new Float64Array(1024);
     colour = new Uint32Array(1024);
     classification = new Uint8Array(1024);
+    returnNumber = new Uint8Array(1024);
+    intensity = new Float32Array(1024);
 
-    add(row: { station: number; offset: number; x: number; y: number; z: number; colour: number; class: number }): void {
+    add(row: ProfileRow): void {
         if (this.count === this.station.length) this.grow();
         const at = this.count++;
         this.station[at] = row.station;
@@ -21,6 +38,8 @@ export class ProfilePoints {
         this.y[at] = row.y;
         this.colour[at] = row.colour;
         this.classification[at] = row.class;
+        this.returnNumber[at] = row.return;
+        this.intensity[at] = row.intensity;
     }
 
     /** Batches of client/region/point_taker.hpp. */
@@ -30,7 +49,8 @@ export class ProfilePoints {
             const count = view.getUint32(at, true), columns = at + 8;
             const double = (column: number, row: number): number => view.getFloat64(columns + 8 * (column * count + row), true);
             const words = columns + 40 * count;
-            for (let row = 0; row < count; row++)
+            for (let row = 0; row < count; row++) {
+                const marks = view.getUint32(words + 4 * (count + row), true);
                 this.add({
                     station: double(0, row),
                     offset: double(1, row),
@@ -38,8 +58,11 @@ export class ProfilePoints {
                     y: double(3, row),
                     z: double(4, row),
                     colour: view.getUint32(words + 4 * row, true),
-                    class: view.getUint32(words + 4 * (count + row), true) & 0xff,
+                    class: marks & 0xff,
+                    return: (marks >> 8) & 0xff,
+                    intensity: view.getFloat32(words + 4 * (2 * count + row), true),
                 });
+            }
             at = words + 12 * count;
         }
     }
@@ -56,21 +79,20 @@ export class ProfilePoints {
 
     private grow(): void {
         const size = 2 * this.station.length;
-        const wider = (old: Float64Array<ArrayBuffer>): Float64Array<ArrayBuffer> => {
-            const array = new Float64Array(size);
+        const wider = <T extends { set(from: T): void }>(old: T, Kind: new (size: number) => T): T => {
+            const array = new Kind(size);
             array.set(old);
             return array;
         };
-        this.station = wider(this.station);
-        this.height = wider(this.height);
-        this.offset = wider(this.offset);
-        this.x = wider(this.x);
-        this.y = wider(this.y);
-        const colour = new Uint32Array(size), classification = new Uint8Array(size);
-        colour.set(this.colour);
-        classification.set(this.classification);
-        this.colour = colour;
-        this.classification = classification;
+        this.station = wider(this.station, Float64Array);
+        this.height = wider(this.height, Float64Array);
+        this.offset = wider(this.offset, Float64Array);
+        this.x = wider(this.x, Float64Array);
+        this.y = wider(this.y, Float64Array);
+        this.colour = wider(this.colour, Uint32Array);
+        this.classification = wider(this.classification, Uint8Array);
+        this.returnNumber = wider(this.returnNumber, Uint8Array);
+        this.intensity = wider(this.intensity, Float32Array);
     }
 }
 
@@ -89,6 +111,7 @@ export async function readProfile(body: ReadableStream<Uint8Array>, into: Profil
             return;
         }
         const number = (name: string): number => Number(fields[columns![name]!]);
+        const numberOr0 = (name: string): number => (columns![name] === undefined ? 0 : number(name));
         into.add({
             station: number('Station'),
             offset: number('Offset'),
@@ -96,7 +119,9 @@ export async function readProfile(body: ReadableStream<Uint8Array>, into: Profil
             y: number('Y'),
             z: number('Z'),
             colour: columns['Red'] === undefined ? plainColour : colourOf(number('Red'), number('Green'), number('Blue')),
-            class: columns['Classification'] === undefined ? 0 : number('Classification'),
+            class: numberOr0('Classification'),
+            return: numberOr0('Return Number'),
+            intensity: numberOr0('Intensity'),
         });
     };
     const reader = body.pipeThrough(new TextDecoderStream() as unknown as ReadableWritablePair<string, Uint8Array>).getReader();

@@ -61,15 +61,22 @@ export function ticks(from: number, to: number, unitsPerPixel: number, pixels = 
     return result;
 }
 
-/** Points as pixels, those that come later over those before. `ratio`: device pixels a CSS pixel. */
-export function draw(points: ProfilePoints, view: ProfileView, image: ImageData, ratio: number, size = 2): void {
+/** Points as pixels in their colours, those that come later over those before. `ratio`: device pixels a CSS pixel. */
+export function draw(
+    points: ProfilePoints,
+    colours: Uint32Array,
+    view: ProfileView,
+    image: ImageData,
+    ratio: number,
+    size = 2,
+): void {
     const pixels = new Uint32Array(image.data.buffer), { width, height } = image;
     const side = Math.max(1, Math.round(size * ratio)), low = Math.floor((side - 1) / 2);
     for (let i = 0; i < points.count; i++) {
         const at = toPixels(view, points.station[i]!, points.height[i]!);
         const x0 = Math.round(at.x * ratio) - low, y0 = Math.round(at.y * ratio) - low;
         for (let y = Math.max(0, y0); y < Math.min(height, y0 + side); y++)
-            for (let x = Math.max(0, x0); x < Math.min(width, x0 + side); x++) pixels[y * width + x] = points.colour[i]!;
+            for (let x = Math.max(0, x0); x < Math.min(width, x0 + side); x++) pixels[y * width + x] = colours[i]!;
     }
 }
 

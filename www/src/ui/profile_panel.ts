@@ -2,6 +2,8 @@ import { css, html, type PropertyValues, svg, type SVGTemplateResult, type Templ
 
 import { type CursorWay, neighbour } from '../profile/profile_cursor.ts';
 import type { Profile } from '../profile/profile.ts';
+import { coloursOf, type ProfileColour } from '../profile/profile_colours.ts';
+import type { ProfilePoints } from '../profile/profile_points.ts';
 import { draw, fitted, margin, nearest, panned, type ProfileView, ticks, toPixels, toProfile, zoomed } from '../profile/profile_view.ts';
 import type { RegionFormat } from '../wasm/values.ts';
 import { download } from './download.ts';
@@ -11,6 +13,8 @@ import { servedLink } from './served_link.ts';
 import { controlStyles } from './shared_styles.ts';
 
 const formats = ['laz', 'las', 'csv'];
+type Corridor = 'off' | 'highlight' | 'hideOutside';
+const corridors: Corridor[] = ['off', 'highlight', 'hideOutside'];
 const ownFormats: RegionFormat[] = ['laz', 'las', 'csv'];
 
 /** Pixels of one press of an arrow key; what one press of + leaves of the view's sides. */
@@ -32,12 +36,15 @@ export class ProfilePanel extends ModelElement {
         hovered: { state: true },
         marked: { state: true },
         said: { state: true },
+        colour: { state: true },
     };
     /** Index of the point under the pointer, and of the one that was clicked; -1: none. */
     declare hovered: number;
     declare marked: number;
     /** Of the point that the keys came to, for those who do not see it. */
     declare said: string;
+    /** None was chosen: the first that the clouds have. */
+    declare colour: ProfileColour | undefined;
 
     static override styles = [
         controlStyles,
@@ -121,6 +128,7 @@ export class ProfilePanel extends ModelElement {
         this.hovered = this.marked = -1;
         this.said = '';
     };
+    private coloured: { points: ProfilePoints; key: string; words: Uint32Array } | undefined;
 
     constructor() {
         super();
@@ -176,6 +184,13 @@ export class ProfilePanel extends ModelElement {
                         @change=${(event: Event) => this.exaggerate((event.target as HTMLInputElement).valueAsNumber)}
                     />
                 </label>
+                ${this.renderChoice(this.text('profile.colour'), this.colour ?? this.colourModes()[0]!, this.colourModes().map((mode) => [mode, this.text(`colour.${mode}`)]), (mode) => (this.colour = mode))}
+                ${this.renderChoice<Corridor>(
+                    this.text('profile.inPicture'),
+                    (profile.corridor?.mode as Corridor | undefined) ?? 'off',
+                    corridors.map((mode) => [mode, this.text(mode === 'off' ? 'profile.corridorOff' : mode === 'highlight' ? 'clip.highlight' : 'profile.isolate')]),
+                    (mode) => profile.showCorridor(mode === 'off' ? undefined : mode),
+                )}
                 <button @click=${() => this.fit()}>${this.text('profile.fit')}</button>
                 <span class="state" role="status" data-points=${points.count}>
                     ${this.text('profile.state', { count: points.count, state })}
@@ -208,6 +223,15 @@ export class ProfilePanel extends ModelElement {
             </div>
             <p class="told">${this.tell()}</p>
             <p class="unseen" role="status">${this.said}</p>`;
+    }
+
+    private renderChoice<T extends string>(label: string, value: T, options: [T, string][], change: (value: T) => void): TemplateResult {
+        return html`<label>
+            ${label}
+            <select @change=${(event: Event) => change((event.target as HTMLSelectElement).value as T)}>
+                ${options.map(([option, text]) => html`<option value=${option} ?selected=${option === value}>${text}</option>`)}
+            </select>
+        </label>`;
     }
 
     /** Files of a cloud that no server cuts. */
@@ -246,8 +270,36 @@ export class ProfilePanel extends ModelElement {
         canvas.width = Math.round(this.shown.width * ratio);
         canvas.height = Math.round(this.shown.height * ratio);
         const context = canvas.getContext('2d')!, image = context.createImageData(canvas.width, canvas.height);
-        draw(this.profile.points, this.shown, image, ratio);
+        draw(this.profile.points, this.colours(), this.shown, image, ratio);
         context.putImageData(image, 0, 0);
+    }
+
+    /** Made anew when the points or the mode are others. */
+    private colours(): Uint32Array {
+        const { points } = this.profile, { looks, style } = this.model;
+        const mode = this.colour ?? this.colourModes()[0]!;
+        const classes = looks.classes(), key = [mode, points.count, style.gradient, classes.length].join(' ');
+        if (this.coloured?.points !== points || this.coloured.key !== key)
+            this.coloured = {
+                points,
+                key,
+                words: coloursOf(points, mode, { gradient: looks.gradients[style.gradient].colours, classes }),
+            };
+        return this.coloured.words;
+    }
+
+    /** That the clouds have values for. */
+    private colourModes(): ProfileColour[] {
+        const has = (attribute: string): boolean =>
+            this.model.clouds.some(({ attributes }) => attributes?.includes(attribute));
+        const needs: [ProfileColour, string?][] = [
+            ['rgb', 'Red'],
+            ['elevation'],
+            ['classification', 'Classification'],
+            ['returnNumber', 'Return Number'],
+            ['intensity', 'Intensity'],
+        ];
+        return needs.flatMap(([mode, attribute]) => (attribute === undefined || has(attribute) ? [mode] : []));
     }
 
     private fit(): void {
