@@ -102,6 +102,8 @@ async function setUp(page) {
     await page.evaluate(() => {
         const { target } = window.stipple.camera(), turned = Math.SQRT1_2;
         const axes = [[turned, turned, 0], [-turned, turned, 0], [0, 0, 1]];
+        const at = (x, y) => [target[0] + x, target[1] + y];
+        const ring = ([x, y], r) => [[x - r, y - r], [x + r, y - r], [x + r / 2, y], [x + r, y + r], [x - r, y + r]];
         window.stipple.setStyle({
             colourMode: 'mix',
             mix: [{ colourMode: 'rgb' }, { colourMode: 'elevation', weight: 0.5 }, { colourMode: 'attribute', attribute: 'Intensity', weight: 0.2 }],
@@ -119,6 +121,11 @@ async function setUp(page) {
                 { mode: 'hideOutside', centre: target, halfSize: [120, 120, 90] },
                 { mode: 'hideInside', centre: target.map((v, i) => v + [30, 20, 0][i]), halfSize: [8, 12, 40], axes },
                 { mode: 'highlight', centre: target.map((v, i) => v - [30, 20, 0][i]), halfSize: [15, 15, 40] },
+            ],
+            clipRegions: [
+                { mode: 'hideOutside', region: { polygon: ring(at(150, 0), 60), holes: [ring(at(150, 0), 20)], heights: [null, target[2] + 200] } },
+                { mode: 'hideInside', region: { prism: { eye: null, forward: [0.1, 0, -1], corners: ring(at(-60, -60), 15).map((corner) => [...corner, target[2]]) } } },
+                { mode: 'highlight', region: { line: [at(-80, 60), at(0, 80), at(80, 60)], width: 12, heights: [target[2] - 100, null] } },
             ],
             highlight: [255, 0, 200],
             background: [40, 50, 60],
@@ -197,6 +204,7 @@ describe('a scene that uses everything', () => {
         assert.equal(scene.clouds.length, 3);
         assert.deepEqual(new Set(scene.measurements.map(({ kind }) => kind)).size, 8);
         assert.deepEqual(scene.style.clipBoxes.map(({ mode }) => mode), ['hideOutside', 'hideInside', 'highlight']);
+        assert.deepEqual(scene.style.clipRegions.map(({ region }) => ['polygon', 'prism', 'line'].find((kind) => kind in region)), ['polygon', 'prism', 'line']);
         assert.equal(scene.cameraPath.length, 3);
         assert.equal(scene.profile.width, 9.5);
         assert.equal(scene.profile.exaggeration, 2);

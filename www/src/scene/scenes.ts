@@ -87,7 +87,7 @@ export class Scenes {
     /** What may be wrong comes before anything is closed, and leaves all as it was. */
     private setUp(scene: Scene): void {
         const { viewer } = this;
-        const before = { style: viewer.style(), limits: viewer.limits() };
+        const before = { style: viewer.style(), limits: viewer.limits(), camera: viewer.camera() };
         try {
             viewer.setStyle({ ...this.defaults.style, ...scene.style });
             viewer.setLimits({ ...this.defaults.limits, ...scene.limits });
@@ -96,6 +96,7 @@ export class Scenes {
         } catch (error) {
             viewer.setStyle(before.style);
             viewer.setLimits(before.limits);
+            viewer.setCamera(before.camera);
             throw error;
         }
     }
