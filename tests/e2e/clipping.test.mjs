@@ -7,7 +7,7 @@ import { after, before, describe, test } from 'node:test';
 
 import { coverage } from './support/picture.mjs';
 import { stipple } from './support/program.mjs';
-import { keepScreenshot, readPixels, settle } from './support/browser.mjs';
+import { keepScreenshot, openPage, readPixels, settle } from './support/browser.mjs';
 import { dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
 let town, page, complaints, pointsInside;
@@ -330,5 +330,26 @@ describe('clip polygons', () => {
         await page.getByRole('button', { name: 'Delete Polygon 1' }).click();
         assert.equal(await page.locator('stipple-clip-overlay g').count(), 0);
         assert.deepEqual(complaints, []);
+    });
+});
+
+describe('a tool that is still on its way', () => {
+    test('takes the clicks that come before it is there', async () => {
+        const { page: other } = await openPage(town.browser, { width: 1000, height: 640 });
+        await other.route('**/polygon_tool*', async (route) => {
+            await new Promise((resolve) => setTimeout(resolve, 1500));
+            await route.continue();
+        });
+        await other.goto(town.address);
+        await settle(other);
+        await other.evaluate(() => window.stipple.setStyle({ sizePixels: 6 }));
+        await settle(other);
+        await other.getByRole('button', { name: 'Polygon on the ground' }).click();
+        for (const [x, y] of [[560, 300], [660, 300], [620, 380]]) await other.mouse.click(x, y);
+        await other.keyboard.press('Enter');
+        assert.equal((await other.evaluate(() => window.stipple.style())).clipRegions.length, 0);
+        await other.waitForFunction(() => window.stipple.style().clipRegions[0]?.region.polygon.length === 3);
+        assert.equal(await other.getByRole('region', { name: 'Point' }).count(), 0); // nobody asked about one
+        await other.close();
     });
 });

@@ -206,12 +206,12 @@ export class Model extends EventTarget {
 
     /** That clicks are for. */
     get tool(): Tool | undefined {
-        return this.measuring.isDrawing ? this.measuring : this.clipping.tool;
+        return this.measuring.isDrawing ? this.measuring : this.clipping.tool ?? this.clipping.coming;
     }
     /** Another is taken in hand. */
     putAway(): void {
         this.measuring.finish();
-        this.clipping.tool?.stop();
+        this.clipping.endTool();
         if (this.annotations.isPlacing) this.annotations.place();
     }
     /** Of the tool in hand, or of the point that is told about. */

@@ -1,5 +1,6 @@
 import type { Model } from '../model.ts';
 import type { ClipBox, ClipRegion, CloudState, Vector } from '../wasm/values.ts';
+import { ComingTool } from './coming_tool.ts';
 import type { PolygonKind, PolygonTool } from './polygon_tool.ts';
 
 /** Of a region that is edited, or of a box. */
@@ -11,6 +12,8 @@ export class Clipping {
     selected: Selected | undefined;
     /** In hand. */
     tool: PolygonTool | undefined;
+    /** In hand until it is loaded. */
+    coming: ComingTool | undefined;
 
     constructor(private readonly model: Model) {}
 
@@ -44,8 +47,12 @@ export class Clipping {
     async draw(kind: PolygonKind): Promise<void> {
         if (this.tool?.kind === kind) return this.tool.finishInTurn();
         this.model.putAway();
+        const coming = (this.coming = new ComingTool(this.model, kind === 'screen'));
         const { PolygonTool } = await import('./polygon_tool.ts'); // loaded when it is first wanted
+        if (this.coming !== coming) return; // put away meanwhile
+        this.coming = undefined;
         this.tool = new PolygonTool(this.model, kind);
+        coming.replay(this.tool);
         this.model.changed();
     }
     /** Throws the sentence of what is wrong with it. */
@@ -55,7 +62,7 @@ export class Clipping {
     }
     /** The tool is put away. */
     endTool(): void {
-        this.tool = undefined;
+        this.tool = this.coming = undefined;
         this.model.changed();
     }
 
