@@ -8,7 +8,7 @@ import type { ClipBox, ClipRegion, RegionFormat, RegionOf, Vector } from '../was
 import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { servedLink } from './served_link.ts';
-import { controlStyles } from './shared_styles.ts';
+import { cardStyles, controlStyles } from './shared_styles.ts';
 
 const modes: ClipBox['mode'][] = ['hideOutside', 'hideInside', 'highlight'];
 const formats = ['laz', 'las', 'ply', 'csv'];
@@ -18,17 +18,9 @@ const ownFormats: RegionFormat[] = ['laz', 'las', 'csv'];
 export class ClipList extends ModelElement {
     static override styles = [
         controlStyles,
+        cardStyles,
         css`
-            ul {
-                list-style: none;
-                margin: 0.6rem 0 0;
-                padding: 0;
-                display: grid;
-                gap: 0.6rem;
-            }
             li {
-                border: 1px solid var(--line);
-                border-radius: 8px;
                 padding: 0.4rem 0.6rem 0.6rem;
             }
             li.selected {

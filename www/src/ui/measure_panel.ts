@@ -8,7 +8,7 @@ import { displayUnits } from '../measuring/units.ts';
 import { select } from './fields.ts';
 import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
-import { controlStyles, factStyles } from './shared_styles.ts';
+import { cardStyles, controlStyles, factStyles } from './shared_styles.ts';
 import { followToolbarKeys, keepToolbarStop, stopOf } from './toolbar.ts';
 
 /** The measuring tools, and what was measured. */
@@ -16,6 +16,7 @@ export class MeasurePanel extends ModelElement {
     static override styles = [
         controlStyles,
         factStyles,
+        cardStyles,
         css`
             .tools {
                 display: grid;
@@ -35,16 +36,7 @@ export class MeasurePanel extends ModelElement {
                 font-size: 0.82rem;
                 color: var(--muted);
             }
-            ul {
-                list-style: none;
-                margin: 0.6rem 0 0;
-                padding: 0;
-                display: grid;
-                gap: 0.6rem;
-            }
             li {
-                border: 1px solid var(--line);
-                border-radius: 8px;
                 padding: 0.4rem 0.5rem 0.5rem 0.6rem;
             }
             li.hidden dl {

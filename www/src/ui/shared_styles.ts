@@ -214,3 +214,18 @@ export const factStyles = css`
         overflow-wrap: anywhere;
     }
 `;
+
+/** Lists of things that are edited in place: a card each. */
+export const cardStyles = css`
+    ul {
+        list-style: none;
+        margin: 0.6rem 0 0;
+        padding: 0;
+        display: grid;
+        gap: 0.6rem;
+    }
+    li {
+        border: 1px solid var(--line);
+        border-radius: 8px;
+    }
+`;
