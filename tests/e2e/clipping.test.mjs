@@ -5,6 +5,7 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
+import { projection } from './support/exact_polygons.mjs';
 import { coverage } from './support/picture.mjs';
 import { stipple } from './support/program.mjs';
 import { keepScreenshot, openPage, readPixels, settle } from './support/browser.mjs';
@@ -180,15 +181,6 @@ function holds(ring, [x, y]) {
     return inside;
 }
 
-/** CSS pixels of the canvas, of a perspective camera. */
-function shownAt({ position, target, up, fovYDegrees }, { width, height }, p) {
-    const unit = (v) => v.map((value) => value / norm(v));
-    const cross = ([a, b, c], [x, y, z]) => [b * z - c * y, c * x - a * z, a * y - b * x];
-    const forward = unit(minus(target, position)), right = unit(cross(forward, up)), above = cross(right, forward);
-    const from = minus(p, position), depth = dot(from, forward), scale = height / 2 / Math.tan((fovYDegrees * Math.PI) / 360) / depth;
-    return [width / 2 + dot(from, right) * scale, height / 2 - dot(from, above) * scale];
-}
-
 describe('clip polygons', () => {
     const region = async () => (await page.evaluate(() => window.stipple.style())).clipRegions[0];
     const item = () => page.locator('li[data-region="0"]');
@@ -317,7 +309,7 @@ describe('clip polygons', () => {
             const b = ring[(i + 1) % ring.length], length = Math.hypot(b[0] - a[0], b[1] - a[1]);
             return Math.abs((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])) / length < 1e-6;
         });
-        const places = all.map((p) => [p, shownAt(camera, canvas, p)]);
+        const show = projection(camera, canvas), places = all.map((p) => [p, show(p)]);
         const unsure = places.filter(([, at]) => isNear(at)).length;
         const expected = places.filter(([, at]) => holds(ring, at)).map(([p]) => p);
         console.log(`  ${saved.length} points show in the polygon, ${unsure} of all are within a millionth of a pixel of its edges' lines`);

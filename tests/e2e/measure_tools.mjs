@@ -49,6 +49,8 @@ async function runAll(browser, folder, scan) {
             for (const tool of tools) await runs.measure(tool, input, hand);
             await runs.profile(input, hand);
             await runs.clip(input, hand, headings[i % headings.length]);
+            await runs.footprint(input, hand);
+            await runs.screenPolygon(input, hand);
             process.stderr.write(`${name}, ${input}: ${i + 1} of ${tries}\n`);
         }
         await comeNear(page);

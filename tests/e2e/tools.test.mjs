@@ -12,7 +12,7 @@ import { openTownPage } from './support/town_page.mjs';
 let town, runs, hands;
 
 before(async () => {
-    town = await openTownPage({ width: 800, height: 480 }, { points: 30_000 });
+    town = await openTownPage({ width: 700, height: 420 }, { points: 20_000 });
     const { page, folder } = town, cloud = join(folder, 'town.stipple'), random = randomFrom(7);
     runs = new ToolRuns({ page, scan: await readScan(join(folder, 'town.las')), cloud, folder });
     hands = { mouse: mouseHand(page, random), fingers: await touchHand(page, random), keys: keyHand(page, random) };
@@ -26,6 +26,8 @@ describe('every tool, by every hand', () => {
             for (const tool of tools) await runs.measure(tool, input, hands[input]);
             await runs.profile(input, hands[input]);
             await runs.clip(input, hands[input], { mouse: undefined, fingers: 90, keys: 30 }[input]);
+            await runs.footprint(input, hands[input]);
+            await runs.screenPolygon(input, hands[input]);
             await runs.askNatively();
             for (const row of runs.rows.filter((row) => row.input === input))
                 console.log(`  ${row.tool}: ${row.off.toExponential(1)} (${row.field}), from native ${row.native.toExponential(1)}`);

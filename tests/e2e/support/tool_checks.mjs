@@ -6,7 +6,7 @@ import { join } from 'node:path';
 
 import { exactAnswer, exactCentre, localPoints, placeOf } from './exact_answers.mjs';
 import { abs, absoluteError, exact, relativeError, toNumber } from './exact_numbers.mjs';
-import { pointsInBox, pointsInCorridor, readScan, recordOf } from './exact_regions.mjs';
+import { pointsInCorridor, readScan, recordOf } from './exact_regions.mjs';
 import { exactVolume, pointsInPolygon } from './exact_volume.mjs';
 import { root, stipple } from './program.mjs';
 
@@ -107,17 +107,33 @@ export function multisetDifference(a, b) {
 const allRecords = (scan) => Array.from({ length: scan.count }, (_, i) => recordOf(scan, i));
 const scratch = (folder, name) => join(folder, name);
 
-/** A clip box's points as a LAS file at `address`: {points, off, native}, the last two numbers of points that differ. */
-export async function clipDifferences(address, box, scan, cloud, folder) {
+/**
+ * Points of a LAS file at `address` against those of `right` (indices of the scan) and those that `stipple export` writes with `options`, if any;
+ * {points, off, native}, the last two numbers of points that differ.
+ */
+export async function exportDifferences(address, right, options, { scan, cloud, folder }) {
     const response = await fetch(address);
     if (!response.ok) throw new Error(`${address}: ${response.status}`);
     await writeFile(scratch(folder, 'clip.las'), Buffer.from(await response.arrayBuffer()));
     const found = allRecords(await readScan(scratch(folder, 'clip.las')));
-    const right = pointsInBox(scan, box).map((i) => recordOf(scan, i));
-    const [east, north] = box.axes[0], heading = (Math.atan2(north, east) * 180) / Math.PI, sizes = box.halfSize.map((half) => 2 * half);
-    await stipple('export', cloud, '-o', scratch(folder, 'native.las'), '--force', '--rotated-box', `${box.centre.join(',')};${sizes.join(',')};${heading}`);
+    const off = multisetDifference(found, right.map((i) => recordOf(scan, i)));
+    if (!options) return { points: right.length, off, native: 0 };
+    await stipple('export', cloud, '-o', scratch(folder, 'native.las'), '--force', ...options);
     const native = allRecords(await readScan(scratch(folder, 'native.las')));
-    return { points: right.length, off: multisetDifference(found, right), native: multisetDifference(found, native) };
+    return { points: right.length, off, native: multisetDifference(found, native) };
+}
+
+/** What `stipple export` calls a clip box. */
+export function boxOptions({ centre, halfSize, axes: [[east, north]] }) {
+    const heading = (Math.atan2(north, east) * 180) / Math.PI, sizes = halfSize.map((half) => 2 * half);
+    return ['--rotated-box', `${centre.join(',')};${sizes.join(',')};${heading}`];
+}
+/** And a footprint or a corridor with heights. */
+export async function regionOptions({ polygon, line, width, heights: [low, high] }, folder) {
+    const heights = ['--height', `${low}..${high}`], geojson = scratch(folder, 'footprint.geojson');
+    if (line) return ['--profile', line.map(([x, y]) => `${x},${y}`).join(';'), '--width', String(width), ...heights];
+    await writeFile(geojson, JSON.stringify({ type: 'Polygon', coordinates: [[...polygon, polygon[0]]] }));
+    return ['--polygon', geojson, ...heights];
 }
 
 async function profileRows(text, scan) {

@@ -36,9 +36,39 @@ async function findPlace(page, random, before) {
     throw new Error('no point was found in the picture');
 }
 
-/** Points by pointing at them. `press`, `point`: a button, a place of the picture. */
-const pointing = (page, random, press, point) => ({
+/** Corners around the middle of the free part of the picture, in turn, so that no edge crosses another on the screen; a point shows at each. */
+async function findCorners(page, random, count) {
+    const { width, height } = page.viewportSize(), middle = { x: 0.64 * width, y: 0.5 * height }, corners = [];
+    for (let tries = 0; corners.length < count && tries < 400; tries++) {
+        const angle = (2 * Math.PI * (corners.length + random(70) / 100)) / count, part = (35 + random(55)) / 100;
+        const place = { x: Math.round(middle.x + part * 0.3 * width * Math.cos(angle)), y: Math.round(middle.y + part * (middle.y - 40) * Math.sin(angle)) };
+        const shown = await shownAt(page, place);
+        if (shown && !corners.some((other) => key(other.shown) === key(shown))) corners.push({ ...place, shown });
+    }
+    if (corners.length < count) throw new Error('no points were found around the middle of the picture');
+    return corners;
+}
+
+/** Waits until a clip polygon that is being drawn has `count` corners. */
+const drawn = (page, count) => page.locator(`stipple-clip-overlay [data-drawn="${count}"]`).waitFor({ state: 'attached' });
+
+/** Points by pointing at them. `press`, `point`: a button, a place of the picture; `finish`: ends a polygon whose last corner is at a place. */
+const pointing = (page, random, press, point, finish) => ({
     press,
+    enter: (locator) => press(locator),
+    /** [{x, y, shown}]: the corners of a polygon that is drawn with a button's tool. */
+    async polygon(name, count) {
+        const button = page.getByRole('button', { name, exact: true });
+        const corners = await findCorners(page, random, count);
+        await press(button);
+        await drawn(page, 0);
+        for (const [i, corner] of corners.entries()) {
+            await point(corner);
+            await drawn(page, i + 1);
+        }
+        await finish(corners.at(-1), button);
+        return corners;
+    },
     async measure(name, count) {
         await press(page.getByRole('button', { name, exact: true }));
         const places = [];
@@ -54,7 +84,7 @@ const pointing = (page, random, press, point) => ({
 });
 
 export function mouseHand(page, random) {
-    const hand = pointing(page, random, (locator) => locator.click(), ({ x, y }) => page.mouse.click(x, y));
+    const hand = pointing(page, random, (locator) => locator.click(), ({ x, y }) => page.mouse.click(x, y), ({ x, y }) => page.mouse.dblclick(x, y));
     hand.drag = async (locator, dx, dy) => {
         const { x, y } = await middleOf(locator);
         await page.mouse.move(x, y);
@@ -72,7 +102,8 @@ export async function touchHand(page, random) {
         await touch('touchStart', place);
         await touch('touchEnd');
     };
-    const hand = pointing(page, random, async (locator) => tap(await middleOf(locator)), tap);
+    const press = async (locator) => tap(await middleOf(locator));
+    const hand = pointing(page, random, press, tap, (_, button) => press(button));
     hand.drag = async (locator, dx, dy) => {
         const { x, y } = await middleOf(locator);
         await touch('touchStart', { x, y });
@@ -110,24 +141,59 @@ export function keyHand(page, random) {
     const walkTo = async (name) => {
         if ((await focused(page))?.name !== name) await tabTo(page, name);
     };
+    const takeTool = async (name) => {
+        await tabTo(page, await stopOfToolbar(page, name));
+        for (let i = 0; i < 8 && (await focused(page)).name !== name; i++) await page.keyboard.press('ArrowRight');
+        await page.keyboard.press('Enter');
+    };
+    /** Points that come to the middle, one after the other. */
+    const takePoints = async (count, isTaken) => {
+        const shown = [];
+        while (shown.length < count) {
+            shown.push(await findPoint(shown));
+            await page.keyboard.press(' ');
+            await isTaken(page, shown.length);
+            for (let i = 0; i < 2; i++) await moveOn();
+            await settle(page);
+        }
+        await page.keyboard.press('Enter');
+        return shown;
+    };
+    /** Corners that the arrows bring the cursor to, from the middle of the picture. */
+    const takeCorners = async () => {
+        let [x, y] = await middle();
+        const corners = [], go = async (arrow, steps, dx, dy) => {
+            for (let i = 0; i < steps; i++) await page.keyboard.press(arrow);
+            [x, y] = [x + steps * dx, y + steps * dy];
+        };
+        const ways = [['ArrowUp', 0, -20], ['ArrowRight', 20, 0], ['ArrowDown', 0, 20]];
+        for (const [arrow, dx, dy] of ways) {
+            await go(arrow, 3 + random(3), dx, dy);
+            await go('Shift+ArrowLeft', 1 + random(4), -4, 0);
+            await page.keyboard.press(' ');
+            corners.push({ x, y });
+            await drawn(page, corners.length);
+        }
+        await page.keyboard.press('Enter');
+        return corners;
+    };
     return {
         async measure(name, count) {
-            await tabTo(page, await stopOfToolbar(page, name));
-            for (let i = 0; i < 8 && (await focused(page)).name !== name; i++) await page.keyboard.press('ArrowRight');
-            await page.keyboard.press('Enter');
-            const shown = [];
-            while (shown.length < count) {
-                shown.push(await findPoint(shown));
-                await page.keyboard.press(' ');
-                await taken(page, shown.length);
-                for (let i = 0; i < 2; i++) await moveOn();
-                await settle(page);
-            }
-            await page.keyboard.press('Enter');
-            return shown;
+            await takeTool(name);
+            return takePoints(count, taken);
         },
+        /** Of three corners: [{x, y}] on the screen, [{shown}] on the ground. */
+        async polygon(name) {
+            await takeTool(name);
+            await drawn(page, 0);
+            if (name === 'Polygon on the screen') return takeCorners();
+            return (await takePoints(3, drawn)).map((shown) => ({ shown }));
+        },
+        enter: async (locator) => void (await tabTo(page, await locator.getAttribute('aria-label'))),
         async press(locator) {
-            await walkTo(await locator.evaluate((element) => element.getAttribute('aria-label') ?? element.textContent.trim()));
+            const name = await locator.evaluate((element) => element.getAttribute('aria-label') ?? element.textContent.trim());
+            if (await locator.evaluate((element) => element.closest('[role=toolbar]') !== null)) return takeTool(name);
+            await walkTo(name);
             await page.keyboard.press('Enter');
         },
     };

@@ -1,7 +1,19 @@
 // Runs of the page's tools by every hand (tool_driver.mjs), and what came of them against what is right (tool_checks.mjs).
 import { settle } from './browser.mjs';
-import { tabTo } from './keyboard.mjs';
-import { bound, clipDifferences, differenceFromNative, errorsOf, nativeAnswers, profileDifferences, recordDifferences, requestOf } from './tool_checks.mjs';
+import { between, pointsInFootprint, pointsShownIn, projection } from './exact_polygons.mjs';
+import { pointsInBox, pointsInCorridor } from './exact_regions.mjs';
+import {
+    bound,
+    boxOptions,
+    differenceFromNative,
+    errorsOf,
+    exportDifferences,
+    nativeAnswers,
+    profileDifferences,
+    recordDifferences,
+    regionOptions,
+    requestOf,
+} from './tool_checks.mjs';
 import { measurements } from './tool_driver.mjs';
 
 /** Points of each tool, by pointers; keys take three where any number goes. */
@@ -101,13 +113,14 @@ export class ToolRuns {
             { field: 'station, offset', off: offPlace, bound },
             { field: 'native', off: native, bound: 0 },
         ]);
+        await this.#corridor(input, hand);
         await hand.press(page.getByRole('button', { name: 'Close the profile' }));
         await this.#clear();
     }
 
     /** A new box that is changed by hand: the points inside, as the file that the panel offers. `turn`: degrees that are typed. */
     async clip(input, hand, turn) {
-        const { page } = this, row = this.#row('Clip export', input);
+        const { page } = this, row = this.#row('Clip box', input);
         await hand.press(page.getByRole('button', { name: 'New box' }));
         await page.locator('[data-box="0"]').waitFor();
         await settle(page);
@@ -116,27 +129,102 @@ export class ToolRuns {
             await hand.drag(page.locator('stipple-clip-overlay [data-handle=centre]'), -25, 12);
             if (turn === undefined) await hand.drag(page.locator('stipple-clip-overlay [data-handle=turn]'), 30, 40);
         } else {
-            await tabTo(page, 'Size x of Box 1');
+            await hand.enter(page.getByLabel('Size x of Box 1'));
             await this.#type(String(20 + row.tries * 7.25));
         }
         if (turn !== undefined) {
-            if (hand.drag) await page.getByLabel('Heading of Box 1').focus();
-            else await tabTo(page, 'Heading of Box 1');
+            await hand.enter(page.getByLabel('Heading of Box 1'));
             await this.#type(String(turn));
         }
         await settle(page);
-        const box = (await page.evaluate(() => window.stipple.style())).clipBoxes[0];
-        const address = await page.locator('[data-box="0"] a', { hasText: /^LAS$/ }).getAttribute('href');
-        const { points, off, native } = await clipDifferences(address, box, this.scan, this.cloud, this.folder);
+        const box = (await this.#style()).clipBoxes[0];
+        await this.#export(row, page.locator('[data-box="0"]'), pointsInBox(this.scan, box), boxOptions(box));
+        await hand.press(page.getByRole('button', { name: 'Delete Box 1' }));
+        await settle(page);
+    }
+
+    /** The corridor of the profile that is open, as a clip between two heights. */
+    async #corridor(input, hand) {
+        const { page, scan, folder } = this, row = this.#row('Clip corridor', input);
+        await page.getByLabel('In the picture').focus();
+        await page.keyboard.press('End'); // alone
+        const { line, width } = (await this.#region()).region, all = pointsInCorridor(scan, line, width).map(({ index }) => index);
+        const heights = await this.#enterHeights('Corridor 1', all, hand);
+        await this.#export(row, this.#item(), between(scan, all, heights), await regionOptions({ line, width, heights }, folder));
+    }
+
+    /** A polygon on the ground, between two heights that points have. */
+    async footprint(input, hand) {
+        const { page, scan, folder } = this, row = this.#row('Clip footprint', input);
+        const corners = await this.#drawPolygon('Polygon on the ground', hand), { polygon } = (await this.#region()).region;
+        if (JSON.stringify(polygon) !== JSON.stringify(corners.map(({ shown }) => shown.position.slice(0, 2))))
+            this.faults.push(`Clip footprint by ${input}: took other corners than the picture showed`);
+        const heights = await this.#enterHeights('Polygon 1', pointsInFootprint(scan, { polygon }), hand);
+        await this.#export(row, this.#item(), pointsInFootprint(scan, { polygon, heights }), await regionOptions({ polygon, heights }, folder));
+        await this.#deletePolygon(hand);
+    }
+
+    /** A polygon on the screen: what shows in it, as one sees it. */
+    async screenPolygon(input, hand) {
+        const { page, scan } = this, row = this.#row('Clip screen polygon', input);
+        const ring = (await this.#drawPolygon('Polygon on the screen', hand)).map(({ x, y }) => [x, y]);
+        const camera = await page.evaluate(() => window.stipple.camera());
+        const { inside, unsure } = pointsShownIn(scan, ring, projection(camera, await page.locator('canvas').boundingBox()));
+        await this.#export(row, this.#item(), inside, undefined, unsure.length);
+        await this.#deletePolygon(hand);
+    }
+
+    /** Corners at random; another time they lie better if edges cross in plan. */
+    async #drawPolygon(name, hand) {
+        for (;;) {
+            const corners = await hand.polygon(name, 5), refused = this.page.getByRole('alert').filter({ hasText: 'cross' });
+            await this.#item().or(refused).first().waitFor({ state: 'attached' });
+            if ((await refused.count()) === 0) return corners;
+            await this.page.getByRole('button', { name: 'Dismiss' }).click();
+            await this.page.locator('canvas').press('Escape');
+        }
+    }
+    async #deletePolygon(hand) {
+        await hand.press(this.page.getByRole('button', { name: 'Delete Polygon 1' }));
+        await this.#item().waitFor({ state: 'detached' });
+        await settle(this.page);
+    }
+
+    /** Those of the points at a quarter and at most of the way up: types them. */
+    async #enterHeights(name, points, hand) {
+        const all = points.map((i) => this.scan.placeOf(i)[2]).sort((a, b) => a - b);
+        const heights = [0.25, 0.95].map((part) => all[Math.floor(part * (all.length - 1))]);
+        for (const [i, label] of [`Lowest height of ${name}`, `Highest height of ${name}`].entries()) {
+            await hand.enter(this.page.getByLabel(label));
+            await this.#type(String(heights[i]));
+        }
+        const { region } = await this.#region();
+        if (JSON.stringify(region.heights) !== JSON.stringify(heights)) this.faults.push(`${name}: heights ${region.heights}, not ${heights}`);
+        return heights;
+    }
+    /** The LAS file that a list entry offers, against the points that are right; `unsure` of all may be in it or not. */
+    async #export(row, item, right, options, unsure = 0) {
+        await settle(this.page);
+        const address = await item.locator('a', { hasText: /^LAS$/ }).getAttribute('href');
+        const { points, off, native } = await exportDifferences(address, right, options, this);
         row.tries++;
         row.points += points;
         row.native = Math.max(row.native, native);
         this.#take(row, [
-            { field: 'points', off, bound: 0 },
+            { field: 'points', off: Math.max(0, off - unsure), bound: 0 },
             { field: 'native', off: native, bound: 0 },
         ]);
-        await hand.press(page.getByRole('button', { name: 'Delete Box 1' }));
-        await settle(page);
+        if (points === 0) this.faults.push(`${row.tool} by ${row.input}: no points, nothing was tested`);
+    }
+    #item() {
+        return this.page.locator('li[data-region="0"]');
+    }
+    async #style() {
+        return this.page.evaluate(() => window.stipple.style());
+    }
+    async #region() {
+        await this.#item().waitFor({ state: 'attached' });
+        return (await this.#style()).clipRegions[0];
     }
     async #type(text) {
         await this.page.keyboard.press('ControlOrMeta+a');
