@@ -150,7 +150,6 @@ describe('by the keyboard alone', () => {
         await checkAxe('help');
         await page.keyboard.press('Escape');
         await page.getByRole('button', { name: 'Dismiss' }).first().click();
-        await page.keyboard.press('Escape');
     });
 });
 

@@ -15,6 +15,8 @@ async function start(): Promise<void> {
     await viewer.whenReady();
     const model = StippleViewer.modelOf(viewer);
     document.documentElement.lang = model.texts.locale;
+    // While nothing on the page has the focus.
+    addEventListener('keydown', (event) => void (event.target === document.body && viewer.dispatchEvent(new KeyboardEvent('keydown', event))));
     installTestHook(model);
     const tiles = query.get('tiles');
     if (tiles !== null) model.baseLayer = { template: tiles, attribution: query.get('tileAttribution') ?? '' };

@@ -8,6 +8,7 @@ import { Picking } from './drawing/picking.ts';
 import { Surface } from './drawing/surface.ts';
 import { Looks } from './looks/looks.ts';
 import { ViewCounting } from './looks/view_counting.ts';
+import type { History } from './history/history.ts';
 import { Geography } from './map/geography.ts';
 import type { BaseLayer } from './map/shapes.ts';
 import { Measuring } from './measuring/measuring.ts';
@@ -70,6 +71,8 @@ export class Model extends EventTarget {
     readonly profile: Profile;
     /** What was measured, and the tool in hand. */
     readonly measuring: Measuring;
+    /** What was done with the tools, to be taken back; here once something may have been. */
+    history: History | undefined;
     /** Files of regions that the page makes itself. */
     readonly regionFiles: RegionFiles;
 

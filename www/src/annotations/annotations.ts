@@ -77,6 +77,14 @@ export class Annotations extends EventTarget {
         this.changed();
     }
 
+    /** Those of another moment. */
+    restore(items: Annotation[]): void {
+        if (this.isTouring) this.endTour();
+        this.items = items;
+        if (!this.find(this.opened)) this.opened = 0;
+        this.changed();
+    }
+
     childrenOf(id: number): Annotation[] {
         return this.items.filter((item) => item.parent === id);
     }

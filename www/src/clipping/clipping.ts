@@ -81,6 +81,13 @@ export class Clipping {
         this.selected = without(this.selected, 'region', index);
         this.model.changeStyle({ clipRegions: this.regions.filter((_, at) => at !== index) });
     }
+    /** Those of another moment. */
+    restore(clipBoxes: ClipBox[], clipRegions: ClipRegion[]): void {
+        const { selected } = this;
+        const isThere = selected && ('box' in selected ? selected.box < clipBoxes.length : selected.region < clipRegions.length);
+        if (!isThere) this.selected = undefined;
+        this.model.changeStyle({ clipBoxes, clipRegions });
+    }
     isSelected(what: Selected): boolean {
         return JSON.stringify(what) === JSON.stringify(this.selected);
     }

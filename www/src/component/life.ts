@@ -1,3 +1,4 @@
+import { followGestures } from '../history/coming_history.ts';
 import { followDrops, followInput } from '../input.ts';
 import { Model } from '../model.ts';
 import { type CloudPage, listClouds } from '../server_clouds.ts';
@@ -88,6 +89,7 @@ export class Life {
         const app = (this.app = new App());
         followInput(model.canvas, model);
         followDrops(this.viewer, model, (isOver) => (app.isDropTarget = isOver), this.ending.signal);
+        followGestures(this.viewer, model, this.ending.signal);
         app.model = model;
         this.root.append(app);
         this.show();

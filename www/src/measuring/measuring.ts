@@ -175,6 +175,23 @@ export class Measuring extends EventTarget {
         this.changed();
     }
 
+    /** What is complete, as it is now. */
+    kept(): Measurement[] {
+        return this.items.flatMap((item) => (item === this.drawn ? [] : [{ ...item }]));
+    }
+    /** What was complete at another moment; what its answers say holds as it did. */
+    restore(kept: Measurement[]): void {
+        const latest = this.latest?.id;
+        this.drawn = undefined;
+        this.based = undefined;
+        const before = this.items;
+        this.items = kept.map((item) => before.find((now) => isAs(now, item)) ?? { ...item });
+        for (const item of before) if (!this.items.includes(item)) this.volumes.stop(item);
+        for (const item of this.items) if (!item.answer && !item.error) this.measure(item);
+        this.latest = this.items.find(({ id }) => id === latest);
+        this.changed();
+    }
+
     rename(item: Measurement, name: string): void {
         item.name = name.trim() || item.name;
         this.changed();
@@ -235,6 +252,10 @@ export class Measuring extends EventTarget {
     private changed(): void {
         this.dispatchEvent(new Event('change'));
     }
+}
+
+function isAs(a: Measurement, b: Measurement): boolean {
+    return a.id === b.id && a.name === b.name && a.hidden === b.hidden && a.points === b.points && a.base === b.base;
 }
 
 function samePoint(a: PlacedPoint | undefined, b: PlacedPoint): boolean {

@@ -82,6 +82,7 @@ export class Scenes {
         if (scene.profile) model.profile.show(scene.profile);
         else model.profile.close();
         model.camera.rememberSoon();
+        model.history?.restart();
     }
 
     /** What may be wrong comes before anything is closed, and leaves all as it was. */

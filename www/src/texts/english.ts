@@ -36,6 +36,11 @@ export const english = {
     'help.views.how': '1 top, 2 front, 3 iso, 4 side',
     'help.back.what': 'Back and forth',
     'help.back.how': 'U, shift U',
+    'help.undo.what': 'Take back, do again',
+    'help.undo.how':
+        'Ctrl Z, Ctrl shift Z (on a Mac with ⌘): what was made, changed or deleted with the tools; of a drawing the last point',
+    'undo': 'Undo',
+    'redo': 'Redo',
     'help.walk.what': 'Walk (fly)',
     'help.walk.how': 'W, A, S, D, E, Q; the wheel changes the speed meanwhile',
     'help.ask.what': 'Ask about a point',

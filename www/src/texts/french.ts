@@ -34,6 +34,11 @@ export const french = translation({
     'help.views.how': '1 dessus, 2 face, 3 iso, 4 côté',
     'help.back.what': 'Retour et avance',
     'help.back.how': 'U, maj U',
+    'help.undo.what': 'Annuler, rétablir',
+    'help.undo.how':
+        'Ctrl Z, Ctrl Maj Z (sur Mac avec ⌘) : ce qui a été créé, modifié ou supprimé avec les outils ; d’un dessin, le dernier point',
+    'undo': 'Annuler',
+    'redo': 'Rétablir',
     'help.walk.what': 'Marcher (Vol)',
     'help.walk.how': 'W, A, S, D, E, Q ; la molette change alors la vitesse',
     'help.ask.what': 'Interroger un point',

@@ -34,6 +34,11 @@ export const german = translation({
     'help.views.how': '1 oben, 2 vorn, 3 schräg, 4 Seite',
     'help.back.what': 'Zurück und vor',
     'help.back.how': 'U, Umschalt U',
+    'help.undo.what': 'Rückgängig, wiederholen',
+    'help.undo.how':
+        'Strg Z, Strg Umschalt Z (am Mac mit ⌘): was mit den Werkzeugen angelegt, geändert oder gelöscht wurde; beim Zeichnen der letzte Punkt',
+    'undo': 'Rückgängig',
+    'redo': 'Wiederholen',
     'help.walk.what': 'Gehen (Fliegen)',
     'help.walk.how': 'W, A, S, D, E, Q; das Mausrad ändert dabei das Tempo',
     'help.ask.what': 'Nach einem Punkt fragen',

@@ -34,6 +34,11 @@ export const japanese = translation({
     'help.views.how': '1 上面、2 正面、3 等角、4 側面',
     'help.back.what': '戻る、進む',
     'help.back.how': 'U、Shift U',
+    'help.undo.what': '元に戻す・やり直す',
+    'help.undo.how':
+        'Ctrl+Z、Ctrl+Shift+Z (Mac では ⌘)：ツールで作成・変更・削除したもの。描画中は最後の点',
+    'undo': '元に戻す',
+    'redo': 'やり直す',
     'help.walk.what': '歩行 (飛行モード)',
     'help.walk.how': 'W、A、S、D、E、Q。その間ホイールで速さを変更',
     'help.ask.what': '点の情報',

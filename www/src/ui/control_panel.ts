@@ -63,6 +63,7 @@ export class ControlPanel extends ModelElement {
         const { model } = this;
         return html`<header>
                 <h1>Stipple</h1>
+                ${model.history ? html`<stipple-undo .model=${model}></stipple-undo>` : ''}
                 <button
                     class="quiet ask"
                     aria-label=${this.text('help')}
