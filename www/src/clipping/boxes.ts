@@ -34,6 +34,22 @@ export function withHeading(box: ClipBox, degrees: number): ClipBox {
     };
 }
 
+/** Its own `axis` goes so far towards another of its axes, and that away from it; the third stays. */
+export function turnedAbout(box: ClipBox, axis: number, towards: number, degrees: number): ClipBox {
+    const axes = axesOf(box), a = axes[axis]!, b = axes[towards]!, [c, s] = directionOf(degrees);
+    const first = unit(a.map((value, i) => c * value + s * b[i]!)), second = b.map((value, i) => c * value - s * a[i]!);
+    const off = second.reduce((sum, value, i) => sum + value * first[i]!, 0); // of rounding
+    const { rotation: _, ...rest } = box, next = [...axes] as typeof axes;
+    next[axis] = first;
+    next[towards] = unit(second.map((value, i) => value - off * first[i]!));
+    return { ...rest, axes: next };
+}
+
+function unit(v: number[]): Vector {
+    const length = Math.hypot(...v);
+    return v.map((value) => value / length) as Vector;
+}
+
 /** Cosine and sine; of right angles exactly, as the server's boxes are turned (shared/geometry/oriented_box.hpp). */
 function directionOf(degrees: number): [number, number] {
     const quarters = (((degrees / 90) % 4) + 4) % 4, radians = (degrees * Math.PI) / 180;

@@ -73,6 +73,15 @@ export class Clipping {
     changeRegion(index: number, clip: ClipRegion): void {
         this.model.changeStyle({ clipRegions: this.regions.map((old, at) => (at === index ? clip : old)) });
     }
+    /** False where it would be no region, and stays: what is dragged passes such places. */
+    takesRegion(index: number, clip: ClipRegion): boolean {
+        try {
+            this.model.change((viewer) => viewer.setStyle({ clipRegions: this.regions.map((old, at) => (at === index ? clip : old)) }));
+            return true;
+        } catch {
+            return false;
+        }
+    }
     remove(index: number): void {
         this.selected = without(this.selected, 'box', index);
         this.set(this.boxes.filter((_, at) => at !== index));
@@ -80,6 +89,10 @@ export class Clipping {
     removeRegion(index: number): void {
         this.selected = without(this.selected, 'region', index);
         this.model.changeStyle({ clipRegions: this.regions.filter((_, at) => at !== index) });
+    }
+    nameOfRegion(index: number): string {
+        const isLine = 'line' in this.regions[index]!.region;
+        return this.model.texts.text(isLine ? 'clip.corridor' : 'clip.polygon', { number: index + 1 });
     }
     /** Those of another moment. */
     restore(clipBoxes: ClipBox[], clipRegions: ClipRegion[]): void {

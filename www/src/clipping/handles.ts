@@ -2,6 +2,23 @@
 
 export type Place = { x: number; y: number };
 
+/** Something over the picture that is dragged, or moved by keys: a corner, a side, a knob. */
+export interface Handle {
+    /** What it is, and which. */
+    kind: 'face' | 'handle' | 'corner' | 'new';
+    which: string;
+    /** For those who do not see it. */
+    label: string;
+    /** CSS pixels of the canvas. */
+    at: Place;
+    /** It, or the pointer that has it, goes on by a step; `event` has where the pointer is. */
+    move(step: Place, event?: PointerEvent): void;
+    /** Delete, or a double click. */
+    remove?(): void;
+    /** Of what is not there yet: makes it. */
+    make?(): void;
+}
+
 /** World units along two directions for a step of the pointer, where these show as `a` and `b` (pixels a unit); none if they show as one line. */
 export function inPlane(step: Place, a: Place, b: Place): [number, number] | undefined {
     const area = a.x * b.y - a.y * b.x;

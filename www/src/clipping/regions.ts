@@ -15,16 +15,6 @@ export function withHeight(clip: ClipRegion, end: 0 | 1, height: number | null):
     return { ...clip, region: region as RegionOf };
 }
 
-/** A corner of a footprint or a corridor goes elsewhere. */
-export function withCorner(clip: ClipRegion, index: number, place: [number, number]): ClipRegion {
-    const { region } = clip;
-    const moved = (corners: [number, number][]): [number, number][] =>
-        corners.map((old, at) => (at === index ? place : old));
-    if ('polygon' in region) return { ...clip, region: { ...region, polygon: moved(region.polygon) } };
-    if ('line' in region) return { ...clip, region: { ...region, line: moved(region.line) } };
-    return clip;
-}
-
 /** What lies between: the region's own heights, and where these are open, what the clouds have. */
 export function heightsShown({ heights }: RegionOf, clouds: CloudState[]): [number, number] {
     const bounds = clouds.flatMap(({ visible, bounds }) => (visible && bounds ? [bounds] : []));

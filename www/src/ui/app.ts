@@ -2,7 +2,6 @@ import './annotation_overlay.ts';
 import './control_panel.ts';
 import './legend_overlay.ts';
 import './loading_bar.ts';
-import './measure_overlay.ts';
 import './notice_list.ts';
 import './status_line.ts';
 
@@ -59,7 +58,7 @@ export class App extends ModelElement {
         super.disconnectedCallback();
     }
     protected override sources(): EventTarget[] {
-        return [this.model.profile];
+        return [this.model.profile, this.model.measuring];
     }
 
     override render(): TemplateResult {
@@ -68,7 +67,9 @@ export class App extends ModelElement {
             ${model.clipping.isInUse && this.later.has('clips', () => import('./clip_overlay.ts'))
                 ? html`<stipple-clip-overlay .model=${model}></stipple-clip-overlay>`
                 : ''}
-            <stipple-measure-overlay .model=${model}></stipple-measure-overlay>
+            ${model.measuring.items.length > 0 && this.later.has('measured', () => import('./measure_overlay.ts'))
+                ? html`<stipple-measure-overlay .model=${model}></stipple-measure-overlay>`
+                : ''}
             <stipple-loading .model=${model}></stipple-loading>
             ${this.hasControls ? this.renderPanels() : ''}
             <stipple-notices class="notices" .model=${model}></stipple-notices>

@@ -2,9 +2,10 @@ import { css, html, type TemplateResult } from 'lit';
 
 import { headingOf, regionOf, withCentre, withHeading, withSize } from '../clipping/boxes.ts';
 import type { Selected } from '../clipping/clipping.ts';
+import { flyToViewOf, isViewOf } from '../clipping/corners.ts';
 import { measuredBox } from '../clipping/measured_box.ts';
 import { pointsAddress, withHeight } from '../clipping/regions.ts';
-import type { ClipBox, ClipRegion, RegionFormat, RegionOf, Vector } from '../wasm/values.ts';
+import type { ClipBox, ClipRegion, RegionFormat, RegionOf, ScreenPolygon, Vector } from '../wasm/values.ts';
 import { select } from './fields.ts';
 import { ModelElement } from './model_element.ts';
 import { servedLink } from './served_link.ts';
@@ -104,16 +105,27 @@ export class ClipList extends ModelElement {
 
     private renderRegion(clip: ClipRegion, index: number): TemplateResult {
         const { clipping } = this.model, { region } = clip;
-        const name = this.text('line' in region ? 'clip.corridor' : 'clip.polygon', { number: index + 1 });
-        return html`<li class=${clipping.isSelected({ region: index }) ? 'selected' : ''} data-region=${index}>
+        const name = clipping.nameOfRegion(index), isSelected = clipping.isSelected({ region: index });
+        return html`<li class=${isSelected ? 'selected' : ''} data-region=${index}>
             ${this.renderHead(name, { region: index }, () => clipping.removeRegion(index))}
             ${this.renderMode(clip.mode, (mode) => clipping.changeRegion(index, { ...clip, mode }))}
             <div class="numbers">
                 <span>${this.text('clip.heights')}</span>
                 ${([0, 1] as const).map((end) => this.renderHeight(clip, index, end, name))}
             </div>
+            ${isSelected && 'prism' in region && !isViewOf(region.prism, this.model) ? this.renderWayBack(region.prism, name) : ''}
             ${this.renderFiles(region, `region ${index}`, name)}
         </li>`;
+    }
+
+    /** Where a polygon on the screen has handles. */
+    private renderWayBack(prism: ScreenPolygon, name: string): TemplateResult {
+        return html`<p class="files">
+            ${this.text('clip.viewHint')}
+            <button aria-label=${this.text('clip.toViewOf', { name })} @click=${() => flyToViewOf(prism, this.model)}>
+                ${this.text('clip.toView')}
+            </button>
+        </p>`;
     }
 
     private renderHead(name: string, what: Selected, remove: () => void): TemplateResult {

@@ -6,7 +6,7 @@ import { panelHead } from './panel_head.ts';
 import { controlStyles, factStyles, headStyles } from './shared_styles.ts';
 
 type Topic = Extract<Key, `help.${string}.what`> extends `help.${infer T}.what` ? T : never;
-const topics: Topic[] = ['turn', 'move', 'zoom', 'fly', 'views', 'back', 'undo', 'walk', 'ask', 'measure', 'escape', 'tools', 'files'];
+const topics: Topic[] = ['turn', 'move', 'zoom', 'fly', 'views', 'back', 'undo', 'walk', 'ask', 'measure', 'clip', 'escape', 'tools', 'files'];
 
 /** What mouse, fingers and keys do. Asks to be closed by the event 'close'. */
 export class HelpPanel extends ModelElement {

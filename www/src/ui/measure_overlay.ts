@@ -43,7 +43,6 @@ export class MeasureOverlay extends OverlayElement {
                 stroke-width: 2;
                 pointer-events: auto;
                 cursor: move;
-                touch-action: none;
             }
             .drawing .handle {
                 pointer-events: none;

@@ -21,6 +21,7 @@ export abstract class OverlayElement extends ModelElement {
             width: 100%;
             height: 100%;
             display: block;
+            touch-action: none; /* of handles; browsers do not heed it on what lies in an svg */
         }
     `;
 
@@ -34,7 +35,7 @@ export abstract class OverlayElement extends ModelElement {
     }
 
     /** Calls `follow` as the pointer goes on that went down on a handle, until it is lifted. */
-    protected followPointer(event: PointerEvent, follow: (moved: PointerEvent) => void): void {
+    followPointer(event: PointerEvent, follow: (moved: PointerEvent) => void): void {
         event.preventDefault();
         event.stopPropagation();
         followPointer(event, follow);

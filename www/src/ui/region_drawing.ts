@@ -1,9 +1,9 @@
 import { css, svg, type SVGTemplateResult } from 'lit';
 
-import { inPlane, type Place } from '../clipping/handles.ts';
-import { atHeight, heightsShown, withCorner } from '../clipping/regions.ts';
+import type { Place } from '../clipping/handles.ts';
+import { atHeight, heightsShown } from '../clipping/regions.ts';
 import type { Model } from '../model.ts';
-import type { ClipRegion, ScreenPolygon, Vector } from '../wasm/values.ts';
+import type { ClipRegion, RegionOf, ScreenPolygon, Vector } from '../wasm/values.ts';
 
 export const clipStyles = css`
     .edges {
@@ -22,10 +22,17 @@ export const clipStyles = css`
         stroke-width: 1.5;
         pointer-events: auto;
         cursor: move;
-        touch-action: none;
     }
     .drawing .handle {
         pointer-events: none;
+    }
+    .handle.new {
+        fill-opacity: 0.45;
+    }
+    @media (pointer: coarse) {
+        circle.handle {
+            r: 10px;
+        }
     }
     .arm {
         stroke: #ffd479;
@@ -35,12 +42,9 @@ export const clipStyles = css`
 
 type Shown = Place | null;
 
-/** Clip regions as lines over the picture, with handles for the corners of the one that is edited; and the polygon that is drawn. */
+/** Clip regions as lines over the picture, and the polygon that is drawn. */
 export class RegionDrawing {
-    constructor(
-        private readonly modelOf: () => Model,
-        private readonly followPointer: (event: PointerEvent, follow: (moved: PointerEvent) => void) => void,
-    ) {}
+    constructor(private readonly modelOf: () => Model) {}
 
     render(): SVGTemplateResult[] {
         const { regions } = this.model.clipping;
@@ -53,24 +57,15 @@ export class RegionDrawing {
 
     private renderRegion(clip: ClipRegion, index: number): SVGTemplateResult {
         const { region } = clip, isSelected = this.model.clipping.isSelected({ region: index });
-        const corners = 'polygon' in region ? region.polygon : 'line' in region ? region.line : [];
         const [low, high] = heightsShown(region, this.model.clouds);
         const lines =
             'prism' in region
                 ? this.prism(region.prism)
-                : [...('polygon' in region ? [region.polygon, ...(region.holes ?? [])] : [corners])].map((ring) =>
+                : ringsOf(region).map((ring) =>
                       this.wall(ring, low, high, 'polygon' in region),
                   );
         return svg`<g class=${isSelected ? 'selected' : ''} data-region=${index}>
             ${lines.map((line) => svg`<path class="edges" d=${line}></path>`)}
-            ${isSelected
-                ? this.show(atHeight(corners, low)).map((at, corner) =>
-                      at
-                          ? svg`<circle class="handle" data-corner=${corner} cx=${at.x} cy=${at.y} r="6"
-                                @pointerdown=${(event: PointerEvent) => this.drag(event, index, corner, low)}></circle>`
-                          : '',
-                  )
-                : ''}
         </g>`;
     }
 
@@ -103,35 +98,12 @@ export class RegionDrawing {
     private show(places: Vector[]): Shown[] {
         return places.length > 0 ? this.model.surface.project(places) : [];
     }
-
-    /** The corner stays at its height and follows the pointer; seen from the side of that plane it stays. */
-    private drag(event: PointerEvent, index: number, corner: number, z: number): void {
-        let last = { x: event.clientX, y: event.clientY };
-        this.followPointer(event, (moved) => {
-            const { clipping } = this.model, clip = clipping.regions[index];
-            const step = { x: moved.clientX - last.x, y: moved.clientY - last.y };
-            last = { x: moved.clientX, y: moved.clientY };
-            const corners = clip && ('polygon' in clip.region ? clip.region.polygon : 'line' in clip.region ? clip.region.line : []);
-            const from = corners?.[corner];
-            if (!clip || !from) return;
-            const way = this.wayOf(step, [from[0], from[1], z], extent(corners));
-            if (way) clipping.changeRegion(index, withCorner(clip, corner, [from[0] + way[0], from[1] + way[1]]));
-        });
-    }
-
-    /** World units along x and y for a step of the pointer at a place. */
-    private wayOf(step: Place, [x, y, z]: Vector, size: number): [number, number] | undefined {
-        const unit = 0.02 * size;
-        const [at, right, up] = this.show([[x, y, z], [x + unit, y, z], [x, y + unit, z]]);
-        if (!at || !right || !up) return undefined;
-        const pixels = (to: Place): Place => ({ x: (to.x - at.x) / unit, y: (to.y - at.y) / unit });
-        return inPlane(step, pixels(right), pixels(up));
-    }
 }
 
-function extent(corners: [number, number][]): number {
-    const xs = corners.map(([x]) => x), ys = corners.map(([, y]) => y);
-    return Math.max(...xs) - Math.min(...xs) + Math.max(...ys) - Math.min(...ys) || 1;
+/** In plan: of a corridor its line. */
+function ringsOf(region: RegionOf): [number, number][][] {
+    if ('polygon' in region) return [region.polygon, ...(region.holes ?? [])];
+    return 'line' in region ? [region.line] : [];
 }
 
 /** Through the places, interrupted where one is behind the camera. */
