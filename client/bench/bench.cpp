@@ -27,7 +27,7 @@ Status checkOptions(const BenchOptions& options) {
         return Error{ErrorCode::invalidArgument, what, option, ""};
     };
     if (std::min(options.width, options.height) < measure::ssimWindow ||
-        std::max(options.width, options.height) > maxPictureSide)
+        std::max(options.width, options.height) > maxPartSide)
         return refused(cat("pictures of ", options.width, " × ", options.height, " pixels can't be compared"),
                        "--size");
     if (options.clouds.empty())

@@ -20,19 +20,20 @@ struct FrameCounters {
     std::uint64_t nodesWaiting = 0;        // wanted, not here yet
     std::uint64_t nodesDrawn = 0;          // here and drawn
     std::uint64_t nodesDelayed = 0;        // here, but left to the next frame: enough is new in this one
-    std::uint64_t pointsConsidered = 0;    // points of nodes in view and large enough, as far as was looked
-    std::uint64_t pointsSelected = 0;      // points of selected nodes
-    std::uint64_t pointsDrawn = 0;         // points sent to the rasterizer
-    std::uint64_t pointsExpected = 0;      // continuous detail: how many of them are likely to show
-    std::uint64_t pointsTooFine = 0; // of selected nodes, skipped: finer than continuous detail asks for
-    std::uint64_t pointsHidden = 0;  // of drawn nodes, by filters, classes or clip boxes
-    std::uint64_t nodesExact = 0;    // drawn in their exact colours instead of means
-    std::uint64_t chunksWaiting = 0; // hierarchy chunks wanted, not here yet
-    std::uint64_t passesRun = 0;     // full-screen or geometry passes of the renderer
-    std::uint64_t passesSkipped = 0; // passes a setting made unnecessary
-    double detailPixels = 0;         // continuous detail: target spacing; 0 with discrete levels
-    double coarserForTime = 1;       // factor of the spacing between points that the frame time asks for
-    bool complete = false;           // everything the selection wants is drawn
+    std::uint64_t nodesOutsidePart = 0; // of a picture in parts, skipped: of each part that they do not reach
+    std::uint64_t pointsConsidered = 0; // points of nodes in view and large enough, as far as was looked
+    std::uint64_t pointsSelected = 0;   // points of selected nodes
+    std::uint64_t pointsDrawn = 0;      // points sent to the rasterizer
+    std::uint64_t pointsExpected = 0;   // continuous detail: how many of them are likely to show
+    std::uint64_t pointsTooFine = 0;    // of selected nodes, skipped: finer than continuous detail asks for
+    std::uint64_t pointsHidden = 0;     // of drawn nodes, by filters, classes or clip boxes
+    std::uint64_t nodesExact = 0;       // drawn in their exact colours instead of means
+    std::uint64_t chunksWaiting = 0;    // hierarchy chunks wanted, not here yet
+    std::uint64_t passesRun = 0;        // full-screen or geometry passes of the renderer
+    std::uint64_t passesSkipped = 0;    // passes a setting made unnecessary
+    double detailPixels = 0;            // continuous detail: target spacing; 0 with discrete levels
+    double coarserForTime = 1;          // factor of the spacing between points that the frame time asks for
+    bool complete = false;              // everything the selection wants is drawn
 };
 
 // Since the session began.

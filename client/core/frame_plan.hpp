@@ -84,8 +84,19 @@ struct AwaitedNode {
     friend bool operator==(const AwaitedNode&, const AwaitedNode&) = default;
 };
 
+// Some pixels of a picture; rows count from the bottom.
+struct PictureWindow {
+    int left = 0, bottom = 0, width = 0, height = 0;
+    bool empty() const { return width <= 0 || height <= 0; }
+    friend bool operator==(const PictureWindow&, const PictureWindow&) = default;
+};
+
 struct FramePlan {
     int width = 0, height = 0; // pixels
+    // What of the picture is drawn; empty: all of it. Its pixels are those that the whole picture has there,
+    // but near edges within the picture, where points and shadows from outside are missing
+    // (client/render/picture_parts.hpp).
+    PictureWindow part;
     ViewTransform view;
     Style style;                 // ranges are resolved: min < max where the mode needs one
     double detailPixels = 0;     // continuous detail: the target spacing in pixels; 0: draw whole prefixes

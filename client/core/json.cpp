@@ -249,31 +249,19 @@ json toJson(const SessionLimits& limits) {
 }
 
 json toJson(const FrameCounters& c) {
-    return {{"cloudsWaiting", c.cloudsWaiting},
-            {"nodesKnown", c.nodesKnown},
-            {"nodesVisited", c.nodesVisited},
-            {"nodesOutsideFrustum", c.nodesOutsideFrustum},
-            {"nodesClipped", c.nodesClipped},
-            {"nodesHidden", c.nodesHidden},
-            {"nodesTooSmall", c.nodesTooSmall},
-            {"nodesOverBudget", c.nodesOverBudget},
-            {"nodesSelected", c.nodesSelected},
-            {"nodesWaiting", c.nodesWaiting},
-            {"nodesDrawn", c.nodesDrawn},
-            {"nodesDelayed", c.nodesDelayed},
-            {"pointsConsidered", c.pointsConsidered},
-            {"pointsSelected", c.pointsSelected},
-            {"pointsDrawn", c.pointsDrawn},
-            {"pointsExpected", c.pointsExpected},
-            {"pointsTooFine", c.pointsTooFine},
-            {"pointsHidden", c.pointsHidden},
-            {"nodesExact", c.nodesExact},
-            {"chunksWaiting", c.chunksWaiting},
-            {"passesRun", c.passesRun},
-            {"passesSkipped", c.passesSkipped},
-            {"detailPixels", c.detailPixels},
-            {"coarserForTime", c.coarserForTime},
-            {"complete", c.complete}};
+    return {{"cloudsWaiting", c.cloudsWaiting},       {"nodesKnown", c.nodesKnown},
+            {"nodesVisited", c.nodesVisited},         {"nodesOutsideFrustum", c.nodesOutsideFrustum},
+            {"nodesClipped", c.nodesClipped},         {"nodesHidden", c.nodesHidden},
+            {"nodesOutsidePart", c.nodesOutsidePart}, {"nodesTooSmall", c.nodesTooSmall},
+            {"nodesOverBudget", c.nodesOverBudget},   {"nodesSelected", c.nodesSelected},
+            {"nodesWaiting", c.nodesWaiting},         {"nodesDrawn", c.nodesDrawn},
+            {"nodesDelayed", c.nodesDelayed},         {"pointsConsidered", c.pointsConsidered},
+            {"pointsSelected", c.pointsSelected},     {"pointsDrawn", c.pointsDrawn},
+            {"pointsExpected", c.pointsExpected},     {"pointsTooFine", c.pointsTooFine},
+            {"pointsHidden", c.pointsHidden},         {"nodesExact", c.nodesExact},
+            {"chunksWaiting", c.chunksWaiting},       {"passesRun", c.passesRun},
+            {"passesSkipped", c.passesSkipped},       {"detailPixels", c.detailPixels},
+            {"coarserForTime", c.coarserForTime},     {"complete", c.complete}};
 }
 
 json toJson(const SessionCounters& c) {

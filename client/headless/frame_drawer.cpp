@@ -2,6 +2,7 @@
 
 #include "client/headless/egl_context.hpp"
 #include "client/render/gles_renderer.hpp"
+#include "client/render/raster_setup.hpp"
 #include "client/render/software_renderer.hpp"
 
 namespace stipple::headless {
@@ -30,7 +31,8 @@ class GlesDrawer final : public FrameDrawer {
     }
 
     Result<const Image*> draw(FramePlan& plan) override {
-        STIPPLE_TRY(target, context_->framebuffer(plan.width, plan.height));
+        PictureWindow drawn = drawnWindow(plan);
+        STIPPLE_TRY(target, context_->framebuffer(drawn.width, drawn.height));
         STIPPLE_CHECK(renderer_->draw(plan, target));
         STIPPLE_TRY(image, context_->read());
         image_ = std::move(image);

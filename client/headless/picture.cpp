@@ -54,6 +54,17 @@ class Session final : public PictureSession {
     }
 
     Result<Picture> draw(const PictureRequest& request) override {
+        Image image{request.width, 0, {}};
+        STIPPLE_TRY(picture, draw(request, [&](const Image& rows) {
+                        image.rgba.insert(image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+                        image.height += rows.height;
+                        return Status();
+                    }));
+        picture.image = std::move(image);
+        return std::move(picture);
+    }
+
+    Result<Picture> draw(const PictureRequest& request, const TakeRows& take) override {
         auto start = Clock::now();
         Picture picture;
         STIPPLE_TRY(camera, load(request));
@@ -63,9 +74,8 @@ class Session final : public PictureSession {
         STIPPLE_TRY(drawer, FrameDrawer::create(request.backend, request.threads));
         picture.renderer = drawer->name();
         start = Clock::now();
-        STIPPLE_TRY(image, drawer->draw(plan));
+        STIPPLE_CHECK(drawRows(*drawer, plan, take));
         picture.drawSeconds = secondsSince(start);
-        picture.image = *image;
         picture.camera = camera;
         picture.frame = plan.counters;
         for (std::string sentence : {lack(request.style), std::string(drawer->limitation())})
@@ -153,14 +163,15 @@ Result<std::unique_ptr<PictureSession>> PictureSession::open(std::unique_ptr<Byt
     return std::unique_ptr<PictureSession>(std::move(session));
 }
 
-Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request) {
+Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request,
+                            const TakeRows& take) {
     STIPPLE_CHECK(checkRequest(request));
     auto start = Clock::now();
     STIPPLE_TRY(session, PictureSession::open(std::move(source), request));
     PictureRequest rest = request;
     double openSeconds = secondsSince(start);
     rest.timeout -= std::chrono::milliseconds(static_cast<std::int64_t>(openSeconds * 1000));
-    STIPPLE_TRY(picture, session->draw(rest));
+    STIPPLE_TRY(picture, take ? session->draw(rest, take) : session->draw(rest));
     picture.openSeconds = openSeconds;
     return std::move(picture);
 }

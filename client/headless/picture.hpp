@@ -7,6 +7,7 @@
 #include "client/core/style.hpp"
 #include "client/core/view_session.hpp"
 #include "client/headless/frame_drawer.hpp"
+#include "client/headless/picture_rows.hpp"
 #include "client/render/image.hpp"
 #include "client/render/pick.hpp"
 #include "shared/base/result.hpp"
@@ -25,7 +26,7 @@ namespace stipple::headless {
 enum class Until { complete, first };
 
 struct PictureRequest {
-    int width = 1280, height = 720; // pixels, 1..16384 each
+    int width = 1280, height = 720; // pixels, 1..maxPictureSide each (client/render/raster_setup.hpp)
     // "top", "front" or "iso"; or a camera as JSON (client/core/json.hpp), whose absent fields are those of
     // "iso".
     std::string view = "iso";
@@ -81,9 +82,12 @@ class PictureSession {
     // nodes: a picture with holes is no answer), of the GL driver; those of open(). After an error the
     // session is not to be used again.
     virtual Result<Picture> draw(const PictureRequest& request) = 0;
+    // The same picture row by row, from the top; Picture::image stays empty. Errors: those of `take`, too.
+    virtual Result<Picture> draw(const PictureRequest& request, const TakeRows& take) = 0;
 };
 
-// A session for one picture.
-Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request);
+// A session for one picture; with `take`, row by row.
+Result<Picture> drawPicture(std::unique_ptr<ByteSource> source, const PictureRequest& request,
+                            const TakeRows& take = {});
 
 } // namespace stipple::headless

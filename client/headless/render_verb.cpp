@@ -118,9 +118,11 @@ Status render(Options& options) {
     STIPPLE_TRY(source, openInput(options));
     // An output that can't be written is known before anything is loaded.
     STIPPLE_TRY(file, OutputFile::create(options.output));
-    STIPPLE_TRY(picture, drawPicture(std::move(source), request));
-    STIPPLE_TRY(png, encodePng(picture.image));
-    STIPPLE_CHECK(file->append(png));
+    STIPPLE_TRY(png, PngWriter::begin(request.width, request.height,
+                                      [&file = *file](ByteSpan bytes) { return file.append(bytes); }));
+    STIPPLE_TRY(picture, drawPicture(std::move(source), request,
+                                     [&png = *png](const Image& rows) { return png.append(rows); }));
+    STIPPLE_CHECK(png->finish());
     STIPPLE_CHECK(file->commit());
 
     for (const std::string& sentence : picture.limitations)
@@ -128,8 +130,8 @@ Status render(Options& options) {
     if (options.json) {
         nlohmann::json answer{
             {"output", options.output},
-            {"width", picture.image.width},
-            {"height", picture.image.height},
+            {"width", request.width},
+            {"height", request.height},
             {"backend", options.backend},
             {"renderer", picture.renderer},
             {"limitations", picture.limitations},
@@ -146,7 +148,7 @@ Status render(Options& options) {
         std::printf(
             "%s: %d x %d pixels, %llu points of %llu nodes; opened in %.3f s, loaded in %.3f s, drawn in "
             "%.3f s\n",
-            options.output.c_str(), picture.image.width, picture.image.height,
+            options.output.c_str(), request.width, request.height,
             static_cast<unsigned long long>(picture.frame.pointsDrawn),
             static_cast<unsigned long long>(picture.frame.nodesDrawn), picture.openSeconds,
             picture.loadSeconds, picture.drawSeconds);
@@ -168,7 +170,8 @@ void addRenderVerb(CLI::App& program, cli::Action& action) {
             "--view", options->request.view,
             "top, front, side, iso, or a camera as JSON: {\"position\": [x, y, z], \"target\": [x, y, z], …}")
         ->capture_default_str();
-    verb->add_option("--size", options->size, "Width and height in pixels")->capture_default_str();
+    verb->add_option("--size", options->size, "Width and height in pixels, each at most 65000")
+        ->capture_default_str();
     verb->add_option("--budget", options->request.limits.pointBudget, "Points drawn at most")
         ->check(cli::wholeNumber(1, cli::mostPoints))
         ->capture_default_str();

@@ -34,7 +34,7 @@ bool copyPacked(std::vector<GLuint>& values) {
 }
 
 // Binds and clears a framebuffer of identities for a part of the picture.
-void beginWindow(GLuint framebuffer, const PickTarget& target, const PickWindow& window) {
+void beginWindow(GLuint framebuffer, const PickTarget& target, const PictureWindow& window) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
     // The picture's own viewport, moved: pixels have the same centres, so points cover the same ones.
     glViewport(-window.left, -window.bottom, target.frame.width, target.frame.height);
@@ -139,7 +139,7 @@ Result<std::optional<PickAnswer>> Picker::take() {
 }
 
 std::vector<PickSample> Picker::readSamples() const {
-    const PickWindow& window = target_.window;
+    const PictureWindow& window = target_.window;
     std::vector<PickSample> samples;
     if (window.empty())
         return samples;

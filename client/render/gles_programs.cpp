@@ -79,6 +79,7 @@ Result<PointProgram> PointProgram::finish(Program program) {
     made.highY = at("uHighY");
     made.origin = at("uOrigin");
     made.centre = at("uCentre");
+    made.part = at("uPart");
     made.nearFar = at("uNearFar");
     made.nearBits = at("uNearBits");
     made.depthShift = at("uDepthShift");
@@ -119,6 +120,7 @@ Result<PointProgram> PointProgram::finish(Program program) {
 void PointProgram::useFor(const RasterFrame& frame) const {
     glUseProgram(program.id());
     glUniform2f(centre, frame.centreX, frame.centreY);
+    glUniform4i(part, frame.left, frame.bottom, frame.width, frame.height);
     glUniform2f(nearFar, frame.near, frame.far);
     glUniform1ui(nearBits, frame.nearBits);
     glUniform1i(depthShift, frame.depthShift);
@@ -178,7 +180,7 @@ void PointProgram::setIdentity(std::uint32_t node, int left, int bottom) const {
     glUniform2i(window, left, bottom);
 }
 
-void PointProgram::setIdentityWindows(const PickWindow& centres, const PickWindow& written) const {
+void PointProgram::setIdentityWindows(const PictureWindow& centres, const PictureWindow& written) const {
     glUniform1i(columns, centres.width);
     glUniform2i(centreWindow, centres.left, centres.bottom);
     glUniform2i(window, written.left, written.bottom);

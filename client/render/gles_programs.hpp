@@ -40,7 +40,7 @@ struct PointProgram {
     Program program;
     GLint cell, fraction, rowX, rowY, rowD, positionShift;
     GLint deep, fractionBits, lowX, highX, lowY, highY, origin;
-    GLint centre, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
+    GLint centre, part, nearFar, nearBits, depthShift, perspective, sizeByDistance, size64, worldSize64,
         sizeRange64;
     GLint rank, continuous, growth, falloff, leastDensity, sizeByDensity;
 
@@ -59,7 +59,7 @@ struct PointProgram {
     void setIdentity(std::uint32_t node, int left, int bottom) const;
     // The second pass of delayed expansion where identities are written: the window that the centres are in,
     // and the one that is written.
-    void setIdentityWindows(const PickWindow& centres, const PickWindow& written) const;
+    void setIdentityWindows(const PictureWindow& centres, const PictureWindow& written) const;
     // Adaptive sizes: the node's place in the octree texture.
     void setOctreePlace(std::uint32_t place, const ResidentNode& node) const;
 };

@@ -7,6 +7,7 @@
 #include "client/render/gles_picker.hpp"
 #include "client/render/gles_programs.hpp"
 #include "client/render/gles_targets.hpp"
+#include "client/render/picture_parts.hpp"
 #include "client/render/raster_setup.hpp"
 #include "shared/base/text.hpp"
 
@@ -33,7 +34,7 @@ int largestSide() {
     GLint texture = 0, viewport[2] = {0, 0};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
-    return std::min({maxPictureSide, texture, viewport[0], viewport[1]});
+    return std::min({maxPartSide, texture, viewport[0], viewport[1]});
 }
 
 constexpr ExpansionCosts expansionCosts{3, 1};
@@ -61,7 +62,7 @@ class Gles3Renderer final : public GlesRenderer {
     Status init(FloatBlending most, int mostPointPixels) {
         floatBlending_ = std::min(most, floatBlending());
         pointPixels_ = std::min(mostPointPixels, largestPoint());
-        pictureSide_ = largestSide();
+        partSide_ = largestSide();
         // Most pictures need these, so they are compiled while points are still on their way. Nothing here
         // waits for the GPU: what does not compile is told by draw().
         for (bool growing : {true, false})
@@ -75,13 +76,15 @@ class Gles3Renderer final : public GlesRenderer {
         STIPPLE_CHECK(checkSize(plan));
         RasterFrame frame = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
+        order_ = partOrder(plan, frame);
+        countOutside(plan, order_);
         bool blends = frame.splats && floatBlending_ != FloatBlending::none;
         limitation_ = limitationOf(frame, blends);
         if (plan.nodes.empty())
             return drawNothing(plan, target);
         bool direct = !edl.enabled && !blends && directTo(target);
         if (!direct)
-            STIPPLE_CHECK(points_.resize(plan.width, plan.height));
+            STIPPLE_CHECK(points_.resize(frame.width, frame.height));
 
         bool late = expandsLate(plan, frame, expansionCosts);
         STIPPLE_CHECK(drawPoints(plan, frame, late, direct ? target : points_.framebuffer.id()));
@@ -106,7 +109,8 @@ class Gles3Renderer final : public GlesRenderer {
     Result<std::vector<float>> distances(const FramePlan& plan) override {
         STIPPLE_CHECK(checkSize(plan));
         RasterFrame frame = rasterFrame(plan);
-        STIPPLE_CHECK(points_.resize(plan.width, plan.height));
+        STIPPLE_CHECK(points_.resize(frame.width, frame.height));
+        order_ = partOrder(plan, frame);
         bool late = expandsLate(plan, frame, expansionCosts);
         STIPPLE_CHECK(drawPoints(plan, frame, late, points_.framebuffer.id()));
         nodes_.endFrame(plan.gpuBytes);
@@ -150,10 +154,11 @@ class Gles3Renderer final : public GlesRenderer {
     }
 
     Status checkSize(const FramePlan& plan) const {
-        if (plan.width < 1 || plan.height < 1 || plan.width > pictureSide_ || plan.height > pictureSide_)
+        PictureWindow drawn = drawnWindow(plan);
+        if (!isDrawable(plan, partSide_))
             return Error{ErrorCode::invalidArgument,
-                         cat("a picture of ", plan.width, " × ", plan.height, " pixels can't be drawn"), "",
-                         cat("each side must be in 1..", pictureSide_, " with this graphics driver")};
+                         cat("a picture of ", drawn.width, " × ", drawn.height, " pixels can't be drawn"), "",
+                         cat("each side must be in 1..", partSide_, " with this graphics driver")};
         return {};
     }
 
@@ -185,20 +190,25 @@ class Gles3Renderer final : public GlesRenderer {
             centres_ = CentreTarget();
             glBindFramebuffer(GL_FRAMEBUFFER, target);
             clear(plan);
-            return drawNodes(plan, frame, drawOrder(plan), {});
+            return drawNodes(plan, frame, order_, {});
         }
-        STIPPLE_CHECK(centres_.resize(plan.width, plan.height, frame.disc));
+        STIPPLE_CHECK(centres_.resize(frame.width, frame.height, frame.disc));
         glBindFramebuffer(GL_FRAMEBUFFER, centres_.framebuffer.id());
         clearCentres(plan);
-        STIPPLE_CHECK(drawNodes(plan, frame, drawOrder(plan), {.collects = true}));
+        STIPPLE_CHECK(drawNodes(plan, frame, order_, {.collects = true}));
         glBindFramebuffer(GL_FRAMEBUFFER, target);
         clear(plan);
         return drawExpanded(frame, {});
     }
 
+    static void setViewport(const FramePlan& plan) {
+        PictureWindow drawn = drawnWindow(plan);
+        glViewport(0, 0, drawn.width, drawn.height);
+    }
+
     void clear(const FramePlan& plan) {
         const auto& background = plan.style.background;
-        glViewport(0, 0, plan.width, plan.height);
+        setViewport(plan);
         setPointState();
         glClearColor(background[0] * levelsInv, background[1] * levelsInv, background[2] * levelsInv, 1);
         glClearDepthf(1);
@@ -207,7 +217,7 @@ class Gles3Renderer final : public GlesRenderer {
 
     // Buffer by buffer: glClear can't clear integers beside colours, and browsers then clear nothing.
     void clearCentres(const FramePlan& plan) {
-        glViewport(0, 0, plan.width, plan.height);
+        setViewport(plan);
         setPointState();
         const GLfloat black[4] = {0, 0, 0, 1}, farthest = 1;
         const GLuint nothing[4] = {0, 0, 0, 0};
@@ -268,7 +278,7 @@ class Gles3Renderer final : public GlesRenderer {
 
     // The second pass of splats, over the depths of the first.
     Status blend(const FramePlan& plan, const RasterFrame& frame, bool late) {
-        STIPPLE_CHECK(sums_.resize(plan.width, plan.height, floatBlending_));
+        STIPPLE_CHECK(sums_.resize(frame.width, frame.height, floatBlending_));
         glBindFramebuffer(GL_FRAMEBUFFER, sums_.framebuffer.id());
         glClearColor(0, 0, 0, 0);
         glClear(GL_COLOR_BUFFER_BIT);
@@ -278,8 +288,8 @@ class Gles3Renderer final : public GlesRenderer {
         glBlendFunc(GL_ONE, GL_ONE);
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, points_.depth.id());
-        Status drawn = late ? drawExpanded(frame, {.blend = true})
-                            : drawNodes(plan, frame, drawOrder(plan), {.blends = true});
+        Status drawn =
+            late ? drawExpanded(frame, {.blend = true}) : drawNodes(plan, frame, order_, {.blends = true});
         glActiveTexture(GL_TEXTURE0 + nearestUnit);
         glBindTexture(GL_TEXTURE_2D, 0);
         glDisable(GL_BLEND);
@@ -291,7 +301,7 @@ class Gles3Renderer final : public GlesRenderer {
     struct Drawing {
         bool blends = false;
         bool collects = false; // the first pass of delayed expansion
-        const PickWindow* identities = nullptr;
+        const PictureWindow* identities = nullptr;
     };
 
     // The points of those nodes, into what is bound.
@@ -362,6 +372,7 @@ class Gles3Renderer final : public GlesRenderer {
         return {};
     }
 
+    std::vector<std::size_t> order_; // of the nodes of the plan that is drawn
     PointPrograms pointPrograms_;
     OctreeTexture octree_;
     Program startedResolve_;
@@ -371,7 +382,7 @@ class Gles3Renderer final : public GlesRenderer {
     CentreTarget centres_; // delayed expansion
     SumTarget sums_;       // splats
     FloatBlending floatBlending_ = FloatBlending::none;
-    int pointPixels_ = maxPointPixels, pictureSide_ = maxPictureSide;
+    int pointPixels_ = maxPointPixels, partSide_ = maxPartSide;
     std::string limitation_;
     NodeBuffers nodes_;
     DepthReader depthReader_;

@@ -27,8 +27,8 @@ class GlesRenderer {
            int mostPointPixels = maxPointPixels);
     virtual ~GlesRenderer() = default; // frees every GL object; the context must still be current
 
-    // Draws into framebuffer `target` (0: the default one), plan.width × plan.height. Uploads nodes it has
-    // not seen, frees buffers of nodes no longer in the plan.
+    // Draws the plan's part into framebuffer `target` (0: the default one), from its lower left corner.
+    // Uploads nodes it has not seen, frees buffers of nodes that it does not draw.
     virtual Status draw(FramePlan& plan, unsigned target = 0) = 0;
     // View distance of the point that each pixel of that plan shows, rows from top to bottom; 0 where there
     // is none. Draws the points once more, into a buffer of its own, and waits for the GPU: for measuring.

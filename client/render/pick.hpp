@@ -37,19 +37,12 @@ struct PickAnswer {
     std::optional<PickHit> hit;
 };
 
-// The pixels that are looked at: a part of the picture, empty if none is near enough. Rows count from the
-// bottom (raster_setup.hpp).
-struct PickWindow {
-    int left = 0, bottom = 0, width = 0, height = 0;
-    bool empty() const { return width <= 0 || height <= 0; }
-};
-
 // What has to be drawn for an answer; stands on its own, also when the plan is gone.
 struct PickTarget {
     PickRequest request;
-    PickWindow window;
+    PictureWindow window; // the pixels that are looked at; empty if none is near enough
     // Where the centres are of all points that can cover a pixel of the window.
-    PickWindow centres;
+    PictureWindow centres;
     RasterFrame frame;
     // Indices of plan.nodes, in draw order, that can cover a pixel of the window: all others are left out for
     // certain, also by the largest size that the style allows.

@@ -118,11 +118,27 @@ double centreDistance(const ViewTransform& view, const DrawNode& node) {
 
 } // namespace
 
+PictureWindow drawnWindow(const FramePlan& plan) {
+    return plan.part.empty() ? PictureWindow{0, 0, plan.width, plan.height} : plan.part;
+}
+
+bool isDrawable(const FramePlan& plan, int mostSide) {
+    PictureWindow drawn = drawnWindow(plan);
+    auto fits = [&](int first, int side, int whole) {
+        return whole >= 1 && whole <= maxPictureSide && first >= 0 && side >= 1 && side <= mostSide &&
+               first <= whole - side;
+    };
+    return fits(drawn.left, drawn.width, plan.width) && fits(drawn.bottom, drawn.height, plan.height);
+}
+
 RasterFrame rasterFrame(const FramePlan& plan) {
     const Style& style = plan.style;
+    PictureWindow drawn = drawnWindow(plan);
     RasterFrame frame;
-    frame.width = plan.width;
-    frame.height = plan.height;
+    frame.width = drawn.width;
+    frame.height = drawn.height;
+    frame.left = drawn.left;
+    frame.bottom = drawn.bottom;
     frame.perspective = plan.view.projection == Projection::perspective;
     frame.centreX = static_cast<float>(plan.width * 0.5);
     frame.centreY = static_cast<float>(plan.height * 0.5);

@@ -76,11 +76,15 @@ inline constexpr int sizeSteps = 64;      // size steps a pixel
 inline constexpr int depthBits = 24;
 inline constexpr int maxPointPixels = 255; // any larger maximum size is clamped to this
 inline constexpr int maxDoublings = 2;     // "Growing"; larger points hide more of the picture than they fill
-inline constexpr int maxPictureSide = 16384;
+// Floats still tell a place at the edge of such a picture to about a hundredth of a pixel.
+inline constexpr int maxPictureSide = 65000;
+inline constexpr int maxPartSide = 16384; // of what is drawn at once
 // Positions are clamped to this before they become integers; no size reaches back from there.
-inline constexpr float positionLimit = 32768;
+inline constexpr float positionLimit = 65536;
 
 static_assert(positionLimit - maxPointPixels > maxPictureSide);
+// Floats tell 1/128-pixel cells apart up to there, and integers hold them in 1/256 pixel.
+static_assert(positionLimit * positionCells < 0x1p24f);
 // Squared distances inside a point, in 1/256 pixel, fit 32 bits: 2 × (255 / 2 × 256)² < 2^31.
 static_assert(2.0 * (maxPointPixels * 128.0) * (maxPointPixels * 128.0) < 2147483648.0);
 
@@ -96,9 +100,11 @@ inline float floatOfBits(std::uint32_t bits) {
 }
 
 struct RasterFrame {
-    int width = 0, height = 0;
+    // What is drawn of the picture, and the first of its pixels there: window coordinates are those of the
+    // whole picture.
+    int width = 0, height = 0, left = 0, bottom = 0;
     bool perspective = true;
-    float centreX = 0, centreY = 0; // half the picture
+    float centreX = 0, centreY = 0; // half the whole picture
     float near = 0, far = 0;
     std::uint32_t nearBits = 0;
     int depthShift = 0;
@@ -191,7 +197,13 @@ bool expandsLate(const FramePlan& plan, const RasterFrame& frame, const Expansio
 // The frame with points of a pixel each.
 RasterFrame singlePixelFrame(const RasterFrame& frame);
 
-// Both sides of the plan must be in 1..maxPictureSide.
+// What is drawn of the plan's picture.
+PictureWindow drawnWindow(const FramePlan& plan);
+// Whether both sides of the picture are in 1..maxPictureSide, and what is drawn lies in it and is at most
+// `mostSide` long.
+bool isDrawable(const FramePlan& plan, int mostSide);
+
+// The plan must be drawable.
 RasterFrame rasterFrame(const FramePlan& plan);
 RasterNode rasterNode(const FramePlan& plan, const DrawNode& node);
 

@@ -27,11 +27,12 @@ STIPPLE_INLINE int halfChord(int half, int away) {
 }
 
 // visit(cell, square of the distance of the pixel's centre from the point in 1/256 pixel) for all pixels of a
-// square or circle of any size, clipped to the picture. Cells: rows from top to bottom; y goes up.
+// square or circle of any size, clipped to what is drawn. Cells: of that, rows from top to bottom; y goes up.
 template <class Visit>
 STIPPLE_INLINE void visitCovered(const RasterFrame& frame, int x, int y, int half, const Visit& visit) {
-    int firstRow = std::max(firstCovered(y, half), 0);
-    int lastRow = std::min(lastCovered(y, half), frame.height - 1);
+    const int bottom = frame.bottom, top = bottom + frame.height - 1;
+    int firstRow = std::max(firstCovered(y, half), bottom);
+    int lastRow = std::min(lastCovered(y, half), top);
     for (int row = firstRow; row <= lastRow; ++row) {
         int away = std::abs(row * 256 + 128 - y);
         int reach = frame.circle ? halfChord(half, away) : half;
@@ -40,13 +41,12 @@ STIPPLE_INLINE void visitCovered(const RasterFrame& frame, int x, int y, int hal
             first = std::min(first, x >> 8);
             last = std::max(last, x >> 8);
         }
-        first = std::max(first, 0);
-        last = std::min(last, frame.width - 1);
-        std::size_t line =
-            static_cast<std::size_t>(frame.height - 1 - row) * static_cast<std::size_t>(frame.width);
+        first = std::max(first, frame.left);
+        last = std::min(last, frame.left + frame.width - 1);
+        std::size_t line = static_cast<std::size_t>(top - row) * static_cast<std::size_t>(frame.width);
         for (int column = first; column <= last; ++column) {
             int across = column * 256 + 128 - x;
-            visit(line + static_cast<std::size_t>(column), away * away + across * across);
+            visit(line + static_cast<std::size_t>(column - frame.left), away * away + across * across);
         }
     }
 }

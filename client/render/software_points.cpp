@@ -48,7 +48,8 @@ STIPPLE_INLINE void placeSmall(int x, int y, int column, int row, const RasterFr
                                std::uint64_t candidate, std::uint64_t* cells) {
     constexpr int half = N * 128;
     auto width = static_cast<std::ptrdiff_t>(frame.width);
-    std::uint64_t* line = cells + (frame.height - 1 - row) * width + column;
+    const int below = frame.bottom + frame.height - 1 - row;
+    std::uint64_t* line = cells + below * width + (column - frame.left);
     std::array<int, N> across;
     for (int c = 0; c < N; ++c) {
         int away = (column + c) * 256 + 128 - x;
@@ -74,8 +75,8 @@ void placeSmallBlock(const RasterFrame& frame, const Block& block, std::size_t c
         int x = 2 * block.x[i] + 1, y = 2 * block.y[i] + 1;
         int column = firstCovered(x, half), row = firstCovered(y, half);
         std::uint64_t candidate = (std::uint64_t{block.step[i]} << indexBits) | index(i);
-        bool within = static_cast<unsigned>(column) <= static_cast<unsigned>(frame.width - N) &&
-                      static_cast<unsigned>(row) <= static_cast<unsigned>(frame.height - N) &&
+        bool within = static_cast<unsigned>(column - frame.left) <= static_cast<unsigned>(frame.width - N) &&
+                      static_cast<unsigned>(row - frame.bottom) <= static_cast<unsigned>(frame.height - N) &&
                       frame.width >= N && frame.height >= N;
         if (within)
             placeSmall<Shared, Circle, N>(x, y, column, row, frame, candidate, cells);

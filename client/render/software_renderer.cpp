@@ -1,6 +1,7 @@
 #include "client/render/software_renderer.hpp"
 
 #include "client/render/drawn_octree.hpp"
+#include "client/render/picture_parts.hpp"
 #include "client/render/raster_setup.hpp"
 #include "client/render/software_cells.hpp"
 #include "client/render/software_expansion.hpp"
@@ -30,7 +31,9 @@ class CellRenderer final : public SoftwareRenderer {
             return image_;
         RasterFrame frame = frame_ = rasterFrame(plan);
         EdlSetup edl = edlSetup(plan.style.edl);
-        placeNodes(plan, drawOrder(plan));
+        std::vector<std::size_t> order = partOrder(plan, frame);
+        countOutside(plan, order);
+        placeNodes(plan, order);
         bool late = expandsLate(plan, frame, expansionCosts);
         makeRuns();
         if (late)
@@ -82,7 +85,7 @@ class CellRenderer final : public SoftwareRenderer {
     }
 
   private:
-    RowRange rowsOf(const PickWindow& window) const {
+    RowRange rowsOf(const PictureWindow& window) const {
         int end = image_.height - window.bottom;
         return {end - window.height, end};
     }
@@ -104,7 +107,7 @@ class CellRenderer final : public SoftwareRenderer {
                      [&](std::size_t i) { drawRun(frame, runs_[i], cells.cells(), workers_.threads() > 1); });
     }
 
-    std::vector<PickSample> samplesIn(const PickWindow& window) const {
+    std::vector<PickSample> samplesIn(const PictureWindow& window) const {
         std::vector<PickSample> samples;
         for (int row = window.bottom; row < window.bottom + window.height; ++row) {
             std::size_t line =
@@ -129,10 +132,10 @@ class CellRenderer final : public SoftwareRenderer {
 
     // False: there is nothing to draw into.
     bool resize(const FramePlan& plan) {
-        bool drawable = plan.width > 0 && plan.height > 0 && plan.width <= maxPictureSide &&
-                        plan.height <= maxPictureSide;
-        image_.width = drawable ? plan.width : 0;
-        image_.height = drawable ? plan.height : 0;
+        bool drawable = isDrawable(plan, maxPartSide);
+        PictureWindow drawn = drawnWindow(plan);
+        image_.width = drawable ? drawn.width : 0;
+        image_.height = drawable ? drawn.height : 0;
         cells_.resize(image_.width, image_.height, workers_.threads());
         image_.rgba.resize(4 * cells_.pixels());
         return drawable;

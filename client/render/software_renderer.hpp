@@ -18,8 +18,9 @@ class SoftwareRenderer {
     static std::unique_ptr<SoftwareRenderer> create(int threads = 0);
     virtual ~SoftwareRenderer() = default;
 
-    // Adds to plan.counters.passesRun and passesSkipped. The picture and all buffers are kept until the next
-    // call. A plan whose sides are not in 1..16384 pixels gives an empty picture.
+    // Draws the plan's part. Adds to plan.counters: passesRun, passesSkipped, nodesOutsidePart. The picture
+    // and all buffers are kept until the next call. A plan that is not drawable (raster_setup.hpp), or whose
+    // part is more than maxPartSide long, gives an empty picture.
     virtual const Image& render(FramePlan& plan) = 0;
 
     // Of the last picture: the view distance of each pixel's point, rows from top to bottom; 0 where there is

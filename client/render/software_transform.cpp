@@ -79,12 +79,16 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
     const std::uint32_t cellZ = static_cast<std::uint32_t>(node.cell[2]);
     const float near = frame.near, far = frame.far;
     const float centreX = frame.centreX, centreY = frame.centreY;
-    const auto width = static_cast<float>(frame.width), height = static_cast<float>(frame.height);
+    const auto left = static_cast<float>(frame.left), right = static_cast<float>(frame.left + frame.width);
+    const auto bottom = static_cast<float>(frame.bottom),
+               top = static_cast<float>(frame.bottom + frame.height);
     const std::uint32_t nearBits = frame.nearBits;
     const int depthShift = frame.depthShift;
     const int positionShift = node.positionShift;
     const std::uint32_t lowMask = (1u << positionShift) - 1;
     const auto columns = static_cast<std::uint32_t>(frame.width);
+    const auto firstColumn = static_cast<std::uint32_t>(frame.left);
+    const auto firstRow = static_cast<std::uint32_t>(frame.bottom);
     const auto lastRow = static_cast<std::uint32_t>(frame.height - 1);
     const std::uint32_t outside = columns * static_cast<std::uint32_t>(frame.height);
     const Wrapping wrapX(node.lowX, node.highX, node.originX), wrapY(node.lowY, node.highY, node.originY);
@@ -144,8 +148,8 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             const std::int32_t cellsX = deepCell(x, wrappedAt(wrapX, a, b, c), fractionBits);
             const std::int32_t cellsY = deepCell(y, wrappedAt(wrapY, a, b, c), fractionBits);
             if constexpr (Size == Sizing::single) {
-                const auto column = static_cast<std::uint32_t>(cellsX >> 7),
-                           row = static_cast<std::uint32_t>(cellsY >> 7);
+                const auto column = static_cast<std::uint32_t>(cellsX >> 7) - firstColumn,
+                           row = static_cast<std::uint32_t>(cellsY >> 7) - firstRow;
                 drawn = drawn & (column < columns) & (row <= lastRow);
                 block.pixel[i] = drawn ? (lastRow - row) * columns + column : outside;
             } else {
@@ -154,9 +158,11 @@ STIPPLE_INLINE void transform(const RasterFrame& frame, const RasterNode& node, 
             }
         } else if constexpr (Size == Sizing::single) {
             // Snapping stays inside its pixel.
-            drawn = drawn & (x >= 0.0f) & (x < width) & (y >= 0.0f) & (y < height);
-            const auto column = static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? x : 0.0f));
-            const auto row = static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? y : 0.0f));
+            drawn = drawn & (x >= left) & (x < right) & (y >= bottom) & (y < top);
+            const auto column =
+                static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? x : left)) - firstColumn;
+            const auto row =
+                static_cast<std::uint32_t>(static_cast<std::int32_t>(drawn ? y : bottom)) - firstRow;
             const std::uint32_t pixel = (lastRow - row) * columns + column;
             block.pixel[i] = drawn ? pixel : outside;
         } else {

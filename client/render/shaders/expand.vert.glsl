@@ -15,7 +15,7 @@ uniform sampler2D uCentreColours;
 uniform sampler2D uCentreDepths;
 #endif
 uniform usampler2D uCentrePlaces; // cell in its pixel: x, y << 7; size << 14, 1/64 pixel. Discs: the normal's word
-uniform int uColumns;             // of the picture, or of the window
+uniform int uColumns;             // of the part, or of the window
 
 void main() {
     ivec2 pixel = ivec2(gl_VertexID % uColumns, gl_VertexID / uColumns);
@@ -31,7 +31,7 @@ void main() {
     vColour = texelFetch(uCentreColours, pixel, 0);
     bool kept = depth < 1.0;
     uint step = uint(depth * 16777216.0);
-    ivec2 corner = pixel * 128;
+    ivec2 corner = (uPart.xy + pixel) * 128;
 #endif
     if (!kept) {
         discardPoint();

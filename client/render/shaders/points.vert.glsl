@@ -118,7 +118,7 @@ void main() {
         grown = clamp((1.0 - q) * uGrowth, 0.0, 1.0);
     }
     window = window + uCentre;
-    window = clamp(window, vec2(-32768.0), vec2(32768.0));
+    window = clamp(window, vec2(-65536.0), vec2(65536.0));
     ivec2 cell = uDeep ? deepCell(steps, window) : ivec2(floor(window * 128.0));
 
     float size64 = uSize64;

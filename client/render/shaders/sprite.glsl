@@ -6,6 +6,7 @@ precision highp float;
 precision highp int;
 
 uniform vec2 uCentre; // half the picture, pixels
+uniform ivec4 uPart;  // what is drawn of it: first pixel, size
 uniform vec2 uNearFar;
 uniform uint uNearBits;
 uniform int uDepthShift;
@@ -126,12 +127,12 @@ float discOf(ivec2 middle, float size64, float distance, uint word) {
 }
 #endif
 
-// cell: 1/128 pixel; step: of depth; word: of its normal, for DISC.
+// cell: 1/128 pixel of the whole picture; step: of depth; word: of its normal, for DISC.
 void placePoint(ivec2 cell, float size64, uint step, uint word) {
     gl_PointSize = size64 * (1.0 / 64.0);
 #ifdef CENTRED
     int radius = 2 * int(size64);
-    vRound = ivec3(2 * cell + 1, radius * radius);
+    vRound = ivec3(2 * (cell - 128 * uPart.xy) + 1, radius * radius);
 #endif
 #ifdef PARABOLOID
     float middle = distanceOfStep(step), half256 = float(2 * int(size64));
@@ -151,6 +152,6 @@ void placePoint(ivec2 cell, float size64, uint step, uint word) {
     vBlended = (floatBitsToUint(max(back, uNearFar.x)) - uNearBits) >> uDepthShift;
 #endif
     // Middle of the cell in normalised device coordinates, w = 1: nothing is divided after this.
-    vec2 snapped = (vec2(cell) + 0.5) * (1.0 / 128.0);
-    gl_Position = vec4((snapped - uCentre) / uCentre, float(step) * (1.0 / 8388608.0) - 1.0, 1.0);
+    vec2 snapped = (vec2(cell - 128 * uPart.xy) + 0.5) * (1.0 / 128.0), halfPart = vec2(uPart.zw) * 0.5;
+    gl_Position = vec4((snapped - halfPart) / halfPart, float(step) * (1.0 / 8388608.0) - 1.0, 1.0);
 }

@@ -75,6 +75,20 @@ TEST_CASE("render says which point is at a place of the picture", "[render]") {
     CHECK(scratch.count() == 0);
 }
 
+TEST_CASE("render writes pictures larger than can be drawn at once", "[render]") {
+    Scratch scratch;
+    std::string output = scratch.file("a.png");
+    for (const char* backend : {"software", "gles"}) {
+        REQUIRE(render({cloudFile(), "-o", output, "--size", "17000x23", "--view", "top", "--backend",
+                        backend, "--budget", "50000"}) == cli::success);
+        auto image = headless::readPng(output);
+        REQUIRE(image.ok());
+        CHECK(image->width == 17000);
+        CHECK(image->height == 23);
+    }
+    CHECK(render({cloudFile(), "-o", output, "--size", "65001x10"}) == cli::usageError);
+}
+
 TEST_CASE("render writes a picture of the size that was asked for", "[render]") {
     Scratch scratch;
     std::string output = scratch.file("a.png");

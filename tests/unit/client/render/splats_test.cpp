@@ -206,7 +206,7 @@ TEST_CASE("a picture larger than the driver draws is refused with its limit", "[
     auto gles = GlesRenderer::create();
     REQUIRE(gles.ok());
     FramePlan plan = testPlan(nodesOf(), {}, {});
-    plan.width = maxPictureSide + 1;
+    plan.width = maxPartSide + 1;
     Status drawn = (*gles)->draw(plan);
     REQUIRE_FALSE(drawn.ok());
     CHECK(drawn.error().code == ErrorCode::invalidArgument);
