@@ -8,6 +8,7 @@
 #include "client/core/point_query.hpp"
 #include "client/core/region_json.hpp"
 #include "client/core/screen_polygon.hpp"
+#include "client/render/picture_parts.hpp"
 #include "client/survey/measure_json.hpp"
 #include "client/web/browser_source.hpp"
 #include "client/web/host.hpp"
@@ -86,9 +87,15 @@ std::string Viewer::cloudFactsJson(CloudId id) const {
     return jsonText(nullptr);
 }
 
-void Viewer::resize(int width, int height) {
+void Viewer::resize(int width, int height, bool inParts) {
     width_ = width;
     height_ = height;
+    inParts_ = inParts;
+    partsBegun_ = false;
+    if (!inParts) {
+        partTarget_ = {};
+        partPixels_ = {};
+    }
     session_->setViewport(width, height);
 }
 
@@ -238,7 +245,7 @@ void Viewer::keepCounters() {
 }
 
 bool Viewer::frame() {
-    if (!renderer_)
+    if (!renderer_ || partsBegun_)
         return false;
     bool isNew = session_->update();
     if (session_->regionsMustGoOn())
@@ -255,9 +262,27 @@ bool Viewer::frame() {
     drawn_ = session_->plan();
     if (drawn_.counters.nodesDelayed > 0)
         stippleHostWake(); // they come with the next frame
+    if (inParts_)
+        return true;
     Status status = renderer_->draw(drawn_);
     drawError_ = status.ok() ? std::nullopt : std::optional(status.error());
     return true;
+}
+
+Result<ByteSpan> Viewer::drawPart(const PictureWindow& kept) {
+    if (!renderer_)
+        return contextError();
+    partsBegun_ = true;
+    PictureWindow part = withMargin(kept, drawn_);
+    STIPPLE_CHECK(partTarget_.resize(part.width, part.height));
+    drawn_.part = part;
+    Status drawn = renderer_->draw(drawn_, partTarget_.framebuffer.id());
+    drawn_.part = {};
+    STIPPLE_CHECK(drawn);
+    partPixels_.resize(4 * static_cast<std::size_t>(kept.width) * static_cast<std::size_t>(kept.height));
+    glReadPixels(kept.left - part.left, kept.bottom - part.bottom, kept.width, kept.height, GL_RGBA,
+                 GL_UNSIGNED_BYTE, partPixels_.data());
+    return ByteSpan(partPixels_);
 }
 
 namespace {
@@ -467,6 +492,7 @@ std::string Viewer::errorsJson() const {
 
 void Viewer::contextLost() {
     renderer_.reset();
+    partTarget_ = {};
 }
 
 Status Viewer::contextRestored() {

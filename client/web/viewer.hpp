@@ -6,6 +6,7 @@
 #include "client/core/navigation.hpp"
 #include "client/core/view_session.hpp"
 #include "client/render/gles_renderer.hpp"
+#include "client/render/gles_targets.hpp"
 #include "client/web/worker_decoder.hpp"
 
 #include <nlohmann/json_fwd.hpp>
@@ -35,7 +36,12 @@ class Viewer {
     // client/core/cloud_facts.hpp; null unless the cloud is ready.
     std::string cloudFactsJson(CloudId id) const;
 
-    void resize(int width, int height); // pixels of the canvas
+    // Pixels of the canvas; or of a picture in parts: frame() draws nothing then, drawPart() does. From the
+    // first part on the picture stays as it is, until the next call.
+    void resize(int width, int height, bool inParts = false);
+    // Pixels of the present picture, within it: four bytes each, rows from the bottom. They stand until the
+    // next call.
+    Result<ByteSpan> drawPart(const PictureWindow& kept);
     Status setCamera(std::string_view json);
     Status setStyle(std::string_view json);
     Status setLimits(std::string_view json);
@@ -156,6 +162,9 @@ class Viewer {
     std::unique_ptr<WorkerDecoder> decoder_; // outlives the session
     std::unique_ptr<ViewSession> session_;
     std::unique_ptr<GlesRenderer> renderer_;
+    gles::PointTarget partTarget_;
+    Bytes partPixels_;
+    bool inParts_ = false, partsBegun_ = false;
     FramePlan drawn_;
     int width_ = 1, height_ = 1;
     std::optional<NamedView> pendingView_ = NamedView::iso; // shown as soon as a cloud is ready

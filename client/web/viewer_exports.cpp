@@ -13,6 +13,7 @@ namespace {
 std::unique_ptr<Viewer> viewer;
 std::string text;
 Bytes regionMessage, regionBytes;
+const std::uint8_t* partPixels = nullptr;
 
 const char* give(std::string value) {
     text = std::move(value);
@@ -69,8 +70,19 @@ EMSCRIPTEN_KEEPALIVE const char* stipple_cloud_facts(std::uint32_t id) {
 }
 
 // Camera, style, limits.
-EMSCRIPTEN_KEEPALIVE void stipple_resize(int width, int height) {
-    viewer->resize(width, height);
+EMSCRIPTEN_KEEPALIVE void stipple_resize(int width, int height, int inParts) {
+    viewer->resize(width, height, inParts != 0);
+}
+// The bytes are at stipple_part_pixels() then.
+EMSCRIPTEN_KEEPALIVE const char* stipple_draw_part(int left, int bottom, int width, int height) {
+    auto drawn = viewer->drawPart({left, bottom, width, height});
+    if (!drawn.ok())
+        return give(drawn.error().sentence());
+    partPixels = drawn->data();
+    return give(std::string());
+}
+EMSCRIPTEN_KEEPALIVE const std::uint8_t* stipple_part_pixels() {
+    return partPixels;
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_set_camera(const char* json) {
     return give(viewer->setCamera(json));

@@ -108,13 +108,24 @@ describe('two viewers on a page', () => {
             const scene = viewer.getScene();
             const picture = await viewer.screenshot();
             const bitmap = await createImageBitmap(picture);
-            return { wrong, scene, picture: picture.type, sized: [bitmap.width, bitmap.height] };
+            const large = await viewer.screenshot({ width: 600, progress: (share) => (window.share = share) }), pieces = [];
+            await viewer.writeScreenshot(new WritableStream({ write: (bytes) => void pieces.push(bytes) }), { width: 600 });
+            const streamed = await new Blob(pieces).arrayBuffer(), kept = await large.arrayBuffer();
+            const enlarged = await createImageBitmap(large);
+            wrong.push(
+                await viewer.screenshot({ width: 65_001 }).catch((error) => error.message),
+                await viewer.screenshot({ width: 600, signal: AbortSignal.abort(new Error('enough')) }).catch((error) => error.message),
+                window.share === 1 && new Uint8Array(streamed).every((byte, i) => byte === new Uint8Array(kept)[i]),
+            );
+            return { wrong, scene, picture: picture.type, sized: [bitmap.width, bitmap.height, enlarged.width, enlarged.height] };
         });
         assert.match(wrong[0], /fovYDegrees/);
         assert.match(wrong[1], /version 99/);
         assert.match(wrong[2], /sizePixels/);
         assert.equal(picture, 'image/png');
-        assert.deepEqual(sized, [420, 300]);
+        assert.match(wrong[3], /at most 65,000 a side/);
+        assert.deepEqual(wrong.slice(4), ['enough', true]);
+        assert.deepEqual(sized, [420, 300, 600, 429]);
         assert.ok((await told('camera-change')).camera.position.every(Number.isFinite));
 
         // The scene in the other viewer: the same clouds, camera and looks. Then another cloud by attribute.

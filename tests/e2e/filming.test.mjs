@@ -7,6 +7,7 @@ import { after, before, describe, test } from 'node:test';
 import Ajv from 'ajv/dist/2020.js';
 
 import { keepScreenshot, launch, openPage, readPixels, settle, settleWithPoints } from './support/browser.mjs';
+import { answerPicker, pickedFile, waitForPicked } from './support/files.mjs';
 import { readPng } from './support/picture.mjs';
 import { makeTown, scratchFolder, serve } from './support/program.mjs';
 import { storedEntries } from './support/zip.mjs';
@@ -39,10 +40,13 @@ async function downloaded(page, act) {
     const [download] = await Promise.all([page.waitForEvent('download'), act()]);
     return readFile(await download.path());
 }
-async function pictureOf(page) {
+async function pixelsOf(png) {
     const path = join(folder.path, 'picture.png');
-    await writeFile(path, await downloaded(page, () => button(page, 'Picture').click()));
+    await writeFile(path, png);
     return readPng(path);
+}
+async function pictureOf(page) {
+    return pixelsOf(await downloaded(page, () => button(page, 'Picture').click()));
 }
 async function wantSize(page, width, height) {
     await page.getByLabel('Width of the picture').fill(String(width));
@@ -80,15 +84,89 @@ describe('pictures', () => {
         await settle(page);
         assert.equal(Buffer.compare((await readPixels(page)).rgba, before.rgba), 0);
         assert.deepEqual(await page.evaluate(() => window.stipple.style()), looks);
-        for (const [w, h] of [[20_000, 10], [12_000, 12_000], [0, 5]]) {
+        for (const [w, h] of [[65_001, 10], [0, 5]]) {
             await wantSize(page, w, h);
             await button(page, 'Picture').click();
-            await page.getByRole('alert').filter({ hasText: 'at most 16,384 a side' }).first().waitFor();
+            await page.getByRole('alert').filter({ hasText: 'at most 65,000 a side' }).first().waitFor();
             await page.getByRole('button', { name: 'Dismiss' }).first().click();
         }
         assert.deepEqual(complaints, []);
         await page.close();
     });
+});
+
+/** As if the graphics system drew no more than that at once. */
+const limitPieces = (page, side) =>
+    page.evaluate((most) => {
+        const get = (window.realParameter ??= WebGL2RenderingContext.prototype.getParameter);
+        WebGL2RenderingContext.prototype.getParameter = function (name) {
+            return name === this.MAX_TEXTURE_SIZE ? most : get.call(this, name);
+        };
+    }, side);
+const isPng = (file) => file.subarray(-8, -4).toString('latin1') === 'IEND';
+const notice = (page, text) => page.getByRole('alert').filter({ hasText: text }).first();
+
+describe('pictures larger than the graphics system draws at once', () => {
+    let page, complaints;
+    before(async () => {
+        ({ page, complaints } = await openTown());
+        await wantSize(page, 500, 375);
+    });
+    after(() => page.close());
+
+    test('are, point by point, those drawn in one piece', async () => {
+        const base = { sizePixels: 4, shape: 'circle', detail: { mode: 'discrete' }, splats: { enabled: false } };
+        const looks = [
+            {},
+            { splats: { enabled: true } },
+            { delayedExpansion: 'on', shape: 'square', edl: { radiusPixels: 6 } },
+            { sizeMode: 'adaptive', shape: 'paraboloid', detail: { mode: 'continuous' } },
+        ];
+        for (const look of looks) {
+            await style(page, { ...base, ...look });
+            await settle(page);
+            const before = await readPixels(page);
+            await limitPieces(page, 4096);
+            const whole = await pictureOf(page);
+            await limitPieces(page, 200);
+            const parts = await pictureOf(page);
+            assert.deepEqual([parts.width, parts.height], [500, 375]);
+            assert.equal(Buffer.compare(parts.rgba, whole.rgba), 0, JSON.stringify(look));
+            await settle(page);
+            assert.equal(Buffer.compare((await readPixels(page)).rgba, before.rgba), 0);
+        }
+        assert.deepEqual(complaints, []);
+    });
+
+    test('go to the disk as they come; given up or failed, they leave nothing, and the page says so', async () => {
+        const expected = await pictureOf(page);
+        await answerPicker(page);
+        await button(page, 'Picture').click();
+        const kept = await pixelsOf(await waitForPicked(page, 'picture.png', isPng));
+        assert.equal(Buffer.compare(kept.rgba, expected.rgba), 0);
+
+        await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('picture.png'));
+        await answerPicker(page, 20_000);
+        await button(page, 'Picture').click();
+        await notice(page, 'The disk is full. Nothing of it was kept.').waitFor();
+        assert.equal(await pickedFile(page, 'picture.png'), null);
+
+        await answerPicker(page);
+        await wantSize(page, 6000, 4500);
+        await button(page, 'Picture').click();
+        await page.getByRole('button', { name: /^Give up \(/ }).click();
+        await notice(page, 'picture.png was given up').waitFor();
+        assert.equal(await pickedFile(page, 'picture.png'), null);
+        await button(page, 'Picture').waitFor();
+        await wantSize(page, 500, 375);
+        assert.equal(Buffer.compare((await pictureAgain()).rgba, expected.rgba), 0);
+        assert.deepEqual(complaints, []);
+    });
+
+    async function pictureAgain() {
+        await button(page, 'Picture').click();
+        return pixelsOf(await waitForPicked(page, 'picture.png', isPng));
+    }
 });
 
 describe('camera paths', () => {
@@ -173,14 +251,24 @@ describe('camera paths', () => {
         assert.deepEqual([...frames.keys()], Array.from({ length: 6 }, (_, i) => `frame_0000${i}.png`));
         assert.deepEqual(await cameraOf(page), before);
         for (const [name, index] of [['frame_00000.png', 0], ['frame_00002.png', 1], ['frame_00005.png', 2]]) {
-            const path = join(folder.path, name);
-            await writeFile(path, frames.get(name));
-            const frame = await readPng(path);
+            const frame = await pixelsOf(frames.get(name));
             assert.deepEqual([frame.width, frame.height], [320, 240]);
             await page.evaluate((camera) => window.stipple.setCamera(camera), cameraPath[index].camera);
             await settle(page);
             const picture = await pictureOf(page);
             assert.equal(Buffer.compare(frame.rgba, picture.rgba), 0, `${name} is not what the view shows`);
+        }
+
+        // The same on the disk, also of frames in parts.
+        for (const side of [4096, 100]) {
+            await limitPieces(page, side);
+            await answerPicker(page);
+            await button(page, 'Write the pictures').click();
+            const kept = storedEntries(await waitForPicked(page, 'frames.zip', (file) => file.subarray(-22, -18).toString('latin1') === 'PK\x05\x06'));
+            assert.deepEqual([...kept.keys()], [...frames.keys()]);
+            for (const [name, frame] of kept)
+                assert.equal(Buffer.compare((await pixelsOf(frame)).rgba, (await pixelsOf(frames.get(name))).rgba), 0, name);
+            await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('frames.zip'));
         }
         assert.deepEqual(complaints, []);
         await page.close();

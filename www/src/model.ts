@@ -65,6 +65,8 @@ export class Model extends EventTarget {
     /** A camera path. */
     readonly film = new Film(this);
     /** Of pictures that are written, as far as a person said. */
+    /** A picture that is being written: how much of it is (0..1). */
+    making: { share: number; cancel(): void } | undefined;
     wantedSize: { width?: number | undefined; height?: number | undefined } = {};
     readonly annotations = new Annotations(this);
     readonly clipping = new Clipping(this);

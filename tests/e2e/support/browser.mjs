@@ -27,6 +27,8 @@ export function launch() {
 export async function openPage(browser, { width = 640, height = 480 } = {}) {
     const page = await browser.newPage({ viewport: { width, height }, deviceScaleFactor: 1 });
     page.setDefaultTimeout(20_000);
+    // Nobody answers a picker: files are downloaded, as in browsers without one (files.mjs has one that answers).
+    await page.addInitScript(() => (window.showSaveFilePicker = undefined));
     const complaints = [];
     page.on('console', (message) => {
         if (message.type() === 'error' || message.type() === 'warning') complaints.push(message.text());

@@ -1,7 +1,9 @@
 import type { Measurement } from '../measuring/measurement.ts';
 import type { Model } from '../model.ts';
+import type { PictureOptions } from '../pictures/pictures.ts';
 import type { Scene } from '../scene/scene.ts';
 import type { ListedCloud } from '../server_clouds.ts';
+import { Problem } from '../texts/message.ts';
 import type { Bounds, Camera, CloudState, Limits, PickedPoint, Style, Vector } from '../wasm/values.ts';
 import { type PrepareRequest, Requests } from '../wasm/requests.ts';
 import type { StyleChange } from '../wasm/viewer.ts';
@@ -149,9 +151,22 @@ export class StippleViewer extends TellingElement {
     pick(x: number, y: number, radius = 8): Promise<PickedPoint | null> {
         return this.get().model.picking.pick(x, y, radius);
     }
-    /** The picture as a PNG, without panels. */
-    screenshot(): Promise<Blob> {
-        return this.get().model.surface.picture();
+    /**
+     * The picture as a PNG, without panels: as it is, or in another size (up to 65,000 pixels a side; points grow with the height),
+     * once all that it shows is here. Rejects with the sentence of what is wrong with the size, or the signal's reason.
+     */
+    async screenshot(options: PictureOptions = {}): Promise<Blob> {
+        const { model } = this.get();
+        return this.orSentence(async () => (await import('../pictures/pictures.ts')).pictureBlob(model, options));
+    }
+    /** The same into a stream, as it is drawn: of no size is more in memory than some rows. The stream is not closed. */
+    async writeScreenshot(into: WritableStream<Uint8Array<ArrayBuffer>>, options: PictureOptions = {}): Promise<void> {
+        const { model } = this.get(), writer = into.getWriter();
+        try {
+            await this.orSentence(async () => (await import('../pictures/pictures.ts')).pictureInto(model, (bytes) => writer.write(bytes), options));
+        } finally {
+            writer.releaseLock();
+        }
     }
     /** Resolves when everything that the picture wants has arrived and is drawn. */
     settled(): Promise<void> {
@@ -180,6 +195,15 @@ export class StippleViewer extends TellingElement {
             change(model);
         } catch (error) {
             throw new Error(model.texts.sentenceOf(error), { cause: error });
+        }
+    }
+
+    private async orSentence<T>(act: () => Promise<T>): Promise<T> {
+        const { texts } = this.get().model;
+        try {
+            return await act();
+        } catch (error) {
+            throw error instanceof Problem ? new Error(texts.sentenceOf(error), { cause: error }) : error;
         }
     }
 

@@ -1,25 +1,17 @@
 import type { ScreenPolygon, Vector } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
-import { Problem } from '../texts/message.ts';
 import type { Frames } from './frames.ts';
-
-/** As the program has it (client/render/raster_setup.hpp), and as many pixels as a page can hold several times. */
-const mostPixelsASide = 16384;
-const mostPixels = 100e6;
-/** What a style may say (client/core/json.cpp). */
-const mostSize = 1000;
-const mostRadius = 100;
 
 /** The canvas that is drawn on: its size, its graphics context, its pixels. Places are CSS pixels of it. */
 export class Surface {
     private readonly stopping = new AbortController();
     private sizes: ResizeObserver | undefined;
-    /** The picture has another size than the canvas on the page, for a file. */
-    private isHeld = false;
+    /** Of a picture for a file, which has another size than the canvas on the page; in parts: it is not on the canvas. */
+    held: { width: number; height: number; inParts: boolean } | undefined;
 
     constructor(
         readonly canvas: HTMLCanvasElement,
-        private readonly viewer: Viewer,
+        readonly viewer: Viewer,
     ) {}
 
     /** Pixels of the picture to one CSS pixel. */
@@ -31,7 +23,7 @@ export class Surface {
     follow(frames: Frames, context: { lost: () => void; restored: () => void }): void {
         const { signal } = this.stopping;
         this.sizes = new ResizeObserver(() => {
-            if (!this.isHeld) this.fill(frames);
+            if (!this.held) this.fill(frames);
         });
         this.sizes.observe(this.canvas);
         const lost = (event: Event): void => {
@@ -66,50 +58,26 @@ export class Surface {
         this.viewer.resize(width, height);
     }
 
-    /**
-     * Does something while the picture has another size, in pixels; points and shadows grow with its height, so that it looks
-     * as on the page. The page's own comes back afterwards, whatever happens. Throws what is wrong with the size.
-     */
-    async withSize<T>(width: number, height: number, frames: Frames, work: () => Promise<T>): Promise<T> {
-        this.check(width, height);
-        if (this.isHeld) throw new Problem('picture.busy');
-        const style = this.viewer.style(), factor = height / this.canvas.height;
-        this.isHeld = true;
-        this.canvas.style.pointerEvents = 'none'; // the view stays as it is
+    /** From now on the picture has another size, and the view stays as it is. */
+    hold(size: { width: number; height: number }, inParts: boolean): void {
+        this.held = { ...size, inParts };
+        this.canvas.style.pointerEvents = 'none';
         this.canvas.style.objectFit = 'contain'; // and is shown with its own sides
-        try {
-            this.resize(width, height);
-            const { drawingBufferWidth, drawingBufferHeight } = this.canvas.getContext('webgl2')!;
-            if (drawingBufferWidth !== width || drawingBufferHeight !== height)
-                throw new Problem('picture.graphics', { width: drawingBufferWidth, height: drawingBufferHeight });
-            if (factor !== 1)
-                this.viewer.setStyle({
-                    sizePixels: Math.min(mostSize, style.sizePixels * factor),
-                    minSizePixels: Math.min(mostSize, style.minSizePixels * factor),
-                    maxSizePixels: Math.min(mostSize, style.maxSizePixels * factor),
-                    edl: { radiusPixels: Math.min(mostRadius, style.edl.radiusPixels * factor) },
-                });
-            this.viewer.refineAtRest();
-            return await work();
-        } finally {
-            this.viewer.setStyle(style);
-            this.canvas.style.pointerEvents = this.canvas.style.objectFit = '';
-            this.isHeld = false;
-            this.fill(frames);
-        }
+        if (inParts) this.viewer.resize(size.width, size.height, true);
+        else this.resize(size.width, size.height);
     }
-
-    private check(width: number, height: number): void {
-        const isSide = (side: number): boolean => Number.isInteger(side) && side >= 1 && side <= mostPixelsASide;
-        if (!isSide(width) || !isSide(height) || width * height > mostPixels)
-            throw new Problem('picture.size', { most: mostPixelsASide, megapixels: mostPixels / 1e6 });
+    /** It is the page's again. */
+    letGo(frames: Frames): void {
+        this.held = undefined;
+        this.canvas.style.pointerEvents = this.canvas.style.objectFit = '';
+        this.fill(frames);
     }
 
     /** Where world positions are in the picture; null for what is behind the camera. */
     project(positions: Vector[]): ({ x: number; y: number } | null)[] {
-        const { width, height, clientWidth, clientHeight } = this.canvas;
-        const ratio = this.isHeld ? Math.max(width / clientWidth, height / clientHeight) : this.pixelRatio;
-        const [left, top] = this.isHeld ? [(clientWidth - width / ratio) / 2, (clientHeight - height / ratio) / 2] : [0, 0];
+        const { clientWidth, clientHeight } = this.canvas, { width = 0, height = 0, inParts = false } = this.held ?? {};
+        const ratio = !this.held ? this.pixelRatio : Math.max(inParts ? 0 : width / clientWidth, height / clientHeight);
+        const [left, top] = this.held ? [(clientWidth - width / ratio) / 2, (clientHeight - height / ratio) / 2] : [0, 0];
         return this.viewer.project(positions).map((at) => at && { x: left + at[0] / ratio, y: top + at[1] / ratio });
     }
 
@@ -120,7 +88,7 @@ export class Surface {
     }
 
     /** The picture as it is, drawn once more: rows from the top, four bytes a pixel. */
-    readPixels(): { width: number; height: number; rgba: Uint8Array } {
+    readPixels(): { width: number; height: number; rgba: Uint8Array<ArrayBuffer> } {
         const { width, height } = this.canvas;
         this.viewer.redraw();
         this.viewer.frame();
@@ -132,13 +100,5 @@ export class Surface {
         for (let y = 0; y < height; y++)
             rgba.set(upwards.subarray((height - 1 - y) * width * 4, (height - y) * width * 4), y * width * 4);
         return { width, height, rgba };
-    }
-
-    /** The picture as a PNG. */
-    async picture(): Promise<Blob> {
-        const { width, height, rgba } = this.readPixels();
-        const canvas = new OffscreenCanvas(width, height);
-        canvas.getContext('2d')!.putImageData(new ImageData(new Uint8ClampedArray(rgba), width, height), 0, 0);
-        return canvas.convertToBlob({ type: 'image/png' });
     }
 }

@@ -22,6 +22,7 @@ export class Film extends EventTarget {
     /** Pictures that are written, and of how many; while they are. */
     progress: { done: number; of: number } | undefined;
     private run = 0;
+    private abort: AbortController | undefined;
 
     constructor(private readonly model: Model) {
         super();
@@ -80,6 +81,7 @@ export class Film extends EventTarget {
     }
     stop(): void {
         this.run++;
+        this.abort?.abort();
         this.isPlaying = false;
         this.changed();
     }
@@ -90,39 +92,22 @@ export class Film extends EventTarget {
         this.changed();
     }
 
-    /** All pictures of the path as PNG files in a ZIP file, each drawn with all that it shows; undefined if it was given up. */
-    async write({ width, height, framesPerSecond }: FrameExport): Promise<Blob | undefined> {
-        const frames = Math.floor(this.duration * framesPerSecond + 1e-9) + 1;
-        if (!(framesPerSecond > 0) || frames > mostFrames) throw new Problem('film.tooMany', { most: mostFrames });
-        const { Zip, ZipPassThrough } = await import('fflate');
-        const { surface, camera } = this.model, before = camera.read(), parts: Blob[] = [];
-        const zip = new Zip((error, chunk) => {
-            if (error) throw error;
-            parts.push(new Blob([new Uint8Array(chunk)])); // which browsers keep on the disk, where they are many
-        });
+    /** All pictures of the path as PNG files in a ZIP file, each drawn with all that it shows, unless it is given up. */
+    async write(options: FrameExport): Promise<void> {
+        const of = Math.floor(this.duration * options.framesPerSecond + 1e-9) + 1;
+        if (!(options.framesPerSecond > 0) || of > mostFrames) throw new Problem('film.tooMany', { most: mostFrames });
         this.stop();
-        const run = this.run;
-        this.progress = { done: 0, of: frames };
-        this.changed();
-        try {
-            await surface.withSize(width, height, this.model.frames, async () => {
-                for (let i = 0; i < frames && run === this.run; i++) {
-                    camera.placeOnTrack(i / framesPerSecond);
-                    await this.model.frames.settled();
-                    const file = new ZipPassThrough(`frame_${String(i).padStart(5, '0')}.png`); // PNG is deflated already
-                    zip.add(file);
-                    file.push(new Uint8Array(await (await surface.picture()).arrayBuffer()), true);
-                    this.progress = { done: i + 1, of: frames };
-                    this.changed();
-                }
-            });
-            if (run !== this.run) return undefined;
-            zip.end();
-            return new Blob(parts, { type: 'application/zip' });
-        } finally {
-            this.progress = undefined;
-            camera.change(before);
+        const abort = (this.abort = new AbortController());
+        const show = (progress: Film['progress']): void => {
+            this.progress = progress;
             this.changed();
+        };
+        show({ done: 0, of });
+        try {
+            const { writeFrames } = await import('../pictures/film_writer.ts');
+            await writeFrames(this.model, { ...options, of }, { signal: abort.signal, done: (done) => show({ done, of }) });
+        } finally {
+            show(undefined);
         }
     }
 

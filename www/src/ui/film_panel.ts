@@ -1,7 +1,6 @@
 import { css, html, type TemplateResult } from 'lit';
 
 import type { Film } from '../navigation/film.ts';
-import { download } from './download.ts';
 import { ModelElement } from './model_element.ts';
 import { controlStyles } from './shared_styles.ts';
 
@@ -153,8 +152,7 @@ export class FilmPanel extends ModelElement {
     private async write(): Promise<void> {
         const { width, height } = this.model.pictureSize();
         try {
-            const film = await this.film.write({ width, height, framesPerSecond: this.framesPerSecond });
-            if (film) download(film, 'frames.zip');
+            await this.film.write({ width, height, framesPerSecond: this.framesPerSecond });
         } catch (error) {
             this.model.tell(error);
         }

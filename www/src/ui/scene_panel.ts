@@ -45,6 +45,7 @@ export class ScenePanel extends ModelElement {
     }
 
     override render(): TemplateResult {
+        const { making } = this.model;
         return html`<fieldset>
             <legend>${this.text('scene')}</legend>
             <div class="ways">
@@ -58,7 +59,9 @@ export class ScenePanel extends ModelElement {
                 <button aria-pressed=${this.model.isMapOpen} @click=${() => this.model.showMap(!this.model.isMapOpen)}>
                     ${this.text('map')}
                 </button>
-                <button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>
+                ${making
+                    ? html`<button @click=${() => making.cancel()}>${this.text('picture.giveUp', { share: Math.floor(100 * making.share) })}</button>`
+                    : html`<button @click=${() => void this.picture()}>${this.text('scene.picture')}</button>`}
             </div>
             ${this.renderSize()}
             <input type="file" id="scene" accept=".json,application/json" @change=${this.load} />
@@ -75,7 +78,7 @@ export class ScenePanel extends ModelElement {
             html`<input
                 type="number"
                 min="1"
-                max="16384"
+                max="65000"
                 aria-label=${label}
                 placeholder=${String(shown)}
                 .value=${value === undefined ? '' : String(value)}
@@ -118,12 +121,7 @@ export class ScenePanel extends ModelElement {
 
     private async picture(): Promise<void> {
         try {
-            const { model } = this, { width, height } = model.pictureSize();
-            const blob = await model.surface.withSize(width, height, model.frames, async () => {
-                await model.frames.settled();
-                return model.surface.picture();
-            });
-            download(blob, 'picture.png');
+            await (await import('../pictures/pictures.ts')).savePicture(this.model);
         } catch (error) {
             this.model.tell(error);
         }

@@ -30,7 +30,9 @@ export interface ViewerProgram extends Program {
     _stipple_set_visible(id: number, visible: number): void;
     _stipple_clouds(): Address;
     _stipple_cloud_facts(id: number): Address;
-    _stipple_resize(width: number, height: number): void;
+    _stipple_resize(width: number, height: number, inParts: number): void;
+    _stipple_draw_part(left: number, bottom: number, width: number, height: number): Address;
+    _stipple_part_pixels(): Address;
     _stipple_set_camera(json: Address): Address;
     _stipple_set_style(json: Address): Address;
     _stipple_set_limits(json: Address): Address;

@@ -92,8 +92,14 @@ export class Viewer {
         return this.json<CloudFacts | null>(this.program._stipple_cloud_facts(id));
     }
 
-    resize(width: number, height: number): void {
-        this.program._stipple_resize(width, height);
+    /** `inParts`: frames draw nothing, and drawPart() does. */
+    resize(width: number, height: number, inParts = false): void {
+        this.program._stipple_resize(width, height, inParts ? 1 : 0);
+    }
+    /** Pixels of the picture: four bytes each, rows from the bottom. From the first part on it stays as it is until resize(). */
+    drawPart(left: number, bottom: number, width: number, height: number): Uint8Array<ArrayBuffer> {
+        this.expect(this.program._stipple_draw_part(left, bottom, width, height));
+        return this.heap.copy(this.program._stipple_part_pixels(), 4 * width * height);
     }
     setCamera(camera: Partial<Camera>): void {
         this.change(camera, (at) => this.program._stipple_set_camera(at));
