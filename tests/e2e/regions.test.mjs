@@ -8,6 +8,7 @@ import { after, before, describe, test } from 'node:test';
 
 import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
 import { makeTown, root, scratchFolder, stipple } from './support/program.mjs';
+import { answerPicker, pickedFile, waitForPicked } from './support/files.mjs';
 import { readLas } from './support/las.mjs';
 import { dot, minus } from './support/town_page.mjs';
 
@@ -94,7 +95,7 @@ describe('regions of a static host', () => {
         await stipple('export', cloud, '-o', exported, '--rotated-box', `${centre.join(',')};${sizes.join(',')};25`);
         const reference = await readLas(exported);
         assert.deepEqual(text(reference.points), text(inside));
-        const las = await readLas(await save('LAS'));
+        const saved = await save('LAS'), las = await readLas(saved);
         assert.deepEqual(text(las.points), text(inside));
         assert.deepEqual([las.scale, las.offset, las.format], [reference.scale, reference.offset, reference.format]);
         assert.deepEqual([...las.records()].sort(), [...reference.records()].sort(), 'all attributes are the same');
@@ -106,6 +107,17 @@ describe('regions of a static host', () => {
         assert.match(head, /^X,Y,Z,/);
         assert.equal(rows.length, inside.length);
         console.log(`  ${inside.length} of ${scan.points.length} points are inside`);
+        // On the disk as it comes, its header last.
+        await answerPicker(page);
+        await page.locator('[data-own]').getByRole('button', { name: 'LAS', exact: true }).click();
+        const expected = await readFile(saved);
+        const kept = await waitForPicked(page, 'town-Box 1.las', (file) => file.length === expected.length);
+        assert.equal(Buffer.compare(kept, expected), 0);
+        await answerPicker(page, 1000);
+        await page.locator('[data-own]').getByRole('button', { name: 'CSV', exact: true }).click();
+        await page.getByRole('alert').filter({ hasText: 'The disk is full. Nothing of it was kept.' }).first().waitFor();
+        assert.equal(await pickedFile(page, 'town-Box 1.csv'), null);
+        await page.evaluate(() => (window.showSaveFilePicker = undefined));
         const volume = await page.locator('[data-volume]').textContent();
         const shown = Number(/[\d.]+/.exec(volume)[0]);
         assert.ok(Math.abs(shown / (sizes[0] * sizes[1] * sizes[2]) - 1) < 1e-3, volume);

@@ -60,14 +60,13 @@ export class Volumes {
         signal: AbortSignal,
     ): Promise<RegionAnswer | undefined> {
         const { workOnRegion } = await import('../regions/region_work.ts'); // loaded when it is first wanted
-        const made = await workOnRegion(this.model, this.viewer, cloud, request, {
+        return workOnRegion(this.model, this.viewer, cloud, request, {
             signal,
             progress: ({ share }) => {
                 item.share = share;
                 this.changed();
             },
         });
-        return made?.answer;
     }
 
     /** Nothing more is wanted of it. */

@@ -1,11 +1,10 @@
 import type { Model } from '../model.ts';
-import { download } from '../ui/download.ts';
 import type { RegionFormat, RegionOf } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
 import type { RegionProgress } from './region_work.ts';
 
-/** More points than this are a matter for `stipple export`: the page holds the file while it is made. */
-const mostPoints = 30_000_000;
+/** More points than this are a matter for `stipple export`. Where a file can't go to the disk as it comes, the page holds it. */
+const mostPointsOnDisk = 1_000_000_000, mostPointsHeld = 30_000_000;
 
 /** A file of a region's points that is being made. */
 export interface RegionFile extends RegionProgress {
@@ -38,16 +37,24 @@ export class RegionFiles extends EventTarget {
         this.files = [...this.files, file];
         this.changed();
         try {
-            const { workOnRegion } = await import('./region_work.ts'); // loaded when it is first wanted
-            const made = await workOnRegion(this.model, this.viewer, cloud, { make: 'file', format, region, mostPoints }, {
-                signal: abort.signal,
-                progress: (progress) => {
-                    Object.assign(file, progress);
-                    this.changed();
-                },
+            const [{ workOnRegion }, { hasDisk, intoFile, newFile }] = await Promise.all([
+                import('./region_work.ts'), // loaded when they are first wanted
+                import('../files/output_file.ts'),
+            ]);
+            await intoFile(this.model, `${name}.${format}`, newFile, async (to) => {
+                const mostPoints = hasDisk() ? mostPointsOnDisk : mostPointsHeld;
+                const answer = await workOnRegion(this.model, this.viewer, cloud, { make: 'file', format, region, mostPoints }, {
+                    signal: abort.signal,
+                    progress: (progress) => {
+                        Object.assign(file, progress);
+                        this.changed();
+                    },
+                    piece: (bytes) => to.write(bytes),
+                    patch: (offset, bytes) => to.overwrite(offset, bytes),
+                });
+                for (const warning of (answer?.['warnings'] as string[] | undefined) ?? []) this.model.notify(warning);
+                return answer !== undefined;
             });
-            if (made?.file) download(made.file, `${name}.${format}`);
-            for (const warning of (made?.answer['warnings'] as string[] | undefined) ?? []) this.model.notify(warning);
         } catch (error) {
             this.model.tell(error);
         }

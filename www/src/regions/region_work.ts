@@ -22,8 +22,10 @@ export interface RegionProgress {
 export interface RegionListener {
     signal: AbortSignal;
     progress?(progress: RegionProgress): void;
-    /** What is made, as it comes (client/region/point_taker.hpp). Without it, it comes as one file at the end. */
-    piece?(bytes: Uint8Array<ArrayBuffer>): void;
+    /** What is made, as it comes (client/region/point_taker.hpp); the work waits until it is taken. */
+    piece?(bytes: Uint8Array<ArrayBuffer>): void | Promise<void>;
+    /** At the end: bytes in place of others that came. */
+    patch?(offset: number, bytes: Uint8Array<ArrayBuffer>): Promise<void>;
 }
 
 /**
@@ -36,7 +38,7 @@ export async function workOnRegion(
     cloud: number,
     request: RegionRequest,
     listener: RegionListener,
-): Promise<{ answer: RegionAnswer; file?: Blob } | undefined> {
+): Promise<RegionAnswer | undefined> {
     const isOver = (): boolean => listener.signal.aborted || model.isDisposed;
     await isOpen(model, cloud, listener.signal);
     const program = await compiledOnce(regionUrl);
@@ -49,7 +51,6 @@ export async function workOnRegion(
             program,
             metadata: viewer.cloudMetadata(cloud),
             request,
-            streams: listener.piece !== undefined,
         });
         if (opened.kind !== 'opened' || isOver()) return undefined;
         scan = viewer.scanRegion({ cloud, ...opened.scan });
@@ -60,7 +61,7 @@ export async function workOnRegion(
             for (const answer of worker.take()) {
                 if (answer.kind !== 'took') continue;
                 points = answer.points;
-                if (answer.piece) listener.piece?.(answer.piece);
+                if (answer.piece) await listener.piece?.(answer.piece);
             }
             const node = worker.waiting < nodesAhead ? viewer.takeRegionNode(scan) : undefined;
             if (node) {
@@ -71,13 +72,15 @@ export async function workOnRegion(
             const { complete, nodesDone, nodesToDo, error } = viewer.regionProgress(scan);
             if (error) throw new Error(error);
             listener.progress?.({ share: nodesDone / Math.max(1, nodesDone + nodesToDo), points });
-            if (complete && worker.waiting === 0) break;
+            if (complete && worker.isIdle) break;
             if (document.hidden) viewer.frame(); // the browser calls for no frames now
-            await worker.answerOr(lookPauseMs);
+            if (worker.waiting > 0 || !complete) await worker.answerOr(lookPauseMs);
         }
         const finished = await worker.ask({ kind: 'finish' });
         if (finished.kind !== 'finished' || isOver()) return undefined;
-        return { answer: finished.answer, ...(finished.file && { file: finished.file }) };
+        if (finished.piece) await listener.piece?.(finished.piece);
+        for (const { offset, bytes } of finished.patches) await listener.patch?.(offset, bytes);
+        return finished.answer;
     } finally {
         worker.stop();
         if (scan !== undefined && !model.isDisposed) viewer.endRegionScan(scan);
@@ -112,6 +115,10 @@ class RegionWorker {
     send(message: ToRegionWorker, transfer: Transferable[] = []): void {
         this.waiting++;
         this.worker.postMessage(message, transfer);
+    }
+    /** All that it was sent is answered, and the answers are taken. */
+    get isIdle(): boolean {
+        return this.waiting === 0 && this.answers.length === 0;
     }
     /** The answers since the last call; throws the sentence of a failure. */
     take(): FromRegionWorker[] {

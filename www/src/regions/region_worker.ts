@@ -4,16 +4,14 @@ import createRegion from '@programs/stipple_region.mjs';
 import { Heap } from '../wasm/heap.ts';
 import type { Address, ProgramOptions, RegionProgram } from '../wasm/program.ts';
 import type { RegionAnswer, RegionScan } from '../wasm/values.ts';
-import { GrowingFile } from './growing_file.ts';
-import type { FromRegionWorker, ToRegionWorker } from './region_messages.ts';
+import type { FromRegionWorker, Patch, ToRegionWorker } from './region_messages.ts';
 
 const scope = self as unknown as {
     onmessage: ((event: MessageEvent<ToRegionWorker>) => void) | null;
     postMessage(message: FromRegionWorker, transfer?: Transferable[]): void;
 };
 
-let program: RegionProgram, heap: Heap, streams = false;
-const file = new GrowingFile();
+let program: RegionProgram, heap: Heap;
 
 /** What a call answers; throws the sentence of its error. */
 function answerOf<T>(at: Address): T | undefined {
@@ -28,7 +26,6 @@ function takePiece(): Uint8Array<ArrayBuffer> | undefined {
 }
 
 async function open(message: ToRegionWorker & { kind: 'open' }): Promise<void> {
-    streams = message.streams;
     program = await new Promise<RegionProgram>((resolve, reject) => {
         const options: ProgramOptions = {
             instantiateWasm: (imports, receive) => {
@@ -51,21 +48,15 @@ function take(message: ToRegionWorker & { kind: 'node' }): void {
         answerOf(program._stipple_region_node(at!, message.message.length, bytes!, message.bytes.length)),
     );
     const points = program._stipple_region_points(), piece = takePiece();
-    if (piece && streams) {
-        scope.postMessage({ kind: 'took', points, piece }, [piece.buffer]);
-        return;
-    }
-    if (piece) file.append(piece);
-    scope.postMessage({ kind: 'took', points });
+    scope.postMessage({ kind: 'took', points, ...(piece && { piece }) }, piece ? [piece.buffer] : []);
 }
 
 function finish(): void {
     const answer = answerOf<RegionAnswer>(program._stipple_region_finish())!;
-    const piece = takePiece();
-    if (piece) file.append(piece);
+    const piece = takePiece(), patches: Patch[] = [];
     for (let at = program._stipple_region_patch(); at >= 0; at = program._stipple_region_patch())
-        file.overwrite(at, heap.copy(program._stipple_region_bytes(), program._stipple_region_bytes_size()));
-    scope.postMessage({ kind: 'finished', answer, ...(!streams && { file: file.blob() }) });
+        patches.push({ offset: at, bytes: heap.copy(program._stipple_region_bytes(), program._stipple_region_bytes_size()) });
+    scope.postMessage({ kind: 'finished', answer, ...(piece && { piece }), patches }, piece ? [piece.buffer] : []);
 }
 
 async function handle(message: ToRegionWorker): Promise<void> {
