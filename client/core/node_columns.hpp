@@ -16,6 +16,7 @@ inline constexpr std::int32_t pictureIntensity = -1; // u16; of clouds whose pic
 inline constexpr std::int32_t exactColourWords = -2; // u32, as ResidentNode::colourWords
 inline constexpr std::int32_t exactIntensity = -3;   // u16
 inline constexpr std::int32_t pictureColours = -4;   // three u16: what colour words can't give back
+inline constexpr std::int32_t exactPosition = -5;    // three i64: the point's integers in the cloud's grid
 
 struct NodeColumn {
     std::int32_t attribute = 0;      // index into the schema, or one of the above

@@ -3,6 +3,8 @@
 #include "shared/base/text.hpp"
 #include "shared/format/cloud_file.hpp"
 
+#include <numeric>
+
 namespace stipple {
 
 namespace {
@@ -76,12 +78,44 @@ Result<ResidentNode> decodePicturePart(const DecodeJob& job, const WorkGate* gat
     return node;
 }
 
-Result<ResidentNode> decodeBlock(const DecodeJob& job, const WorkGate* gate) {
-    STIPPLE_TRY(columns, decodeColumns(job, gate));
+Result<PointBatch> decodeWhole(const DecodeJob& job, const WorkGate* gate) {
+    NodeBytes whole;
+    whole.entry = job.entry;
+    whole.attributes.resize(job.metadata->schema.attributes.size());
+    std::iota(whole.attributes.begin(), whole.attributes.end(), 0);
+    whole.bytes = job.picture;
+    return decodeNode(*job.metadata, whole, gate);
+}
+
+Result<NodeColumns> decodePoints(const DecodeJob& job, const WorkGate* gate) {
+    STIPPLE_TRY(batch, decodeWhole(job, gate));
+    for (std::uint32_t point : job.points)
+        if (point >= batch.size())
+            return errorAt(job, ErrorCode::invalidArgument, cat("the node has no point ", point));
+    NodeColumns made;
+    made.pointCount = static_cast<std::uint32_t>(job.points.size());
+    ByteWriter values;
+    made.columns.push_back({exactPosition, 3 * sizeof(std::int64_t)});
+    for (std::uint32_t point : job.points)
+        for (std::int64_t step :
+             {batch.positions[point].x, batch.positions[point].y, batch.positions[point].z})
+            values.write(step);
+    for (std::size_t a = 0; a < batch.columns.size(); ++a) {
+        std::size_t size = job.metadata->schema.attributes[a].size();
+        made.columns.push_back({static_cast<std::int32_t>(a), static_cast<std::uint32_t>(size)});
+        for (std::uint32_t point : job.points)
+            values.writeBytes({batch.columns[a].data() + point * size, size});
+    }
+    made.values = values.take();
+    return made;
+}
+
+ResidentNode columnNode(const DecodeJob& job, NodeColumns columns) {
     ResidentNode node;
     node.id = nextResidentNodeId();
     node.key = job.entry.key;
-    node.pointCount = node.totalPoints = job.entry.pointCount;
+    node.pointCount = columns.pointCount;
+    node.totalPoints = job.entry.pointCount;
     node.columns = std::move(columns);
     return node;
 }
@@ -98,7 +132,10 @@ class InlineDecoder final : public NodeDecoder {
 Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate) {
     if (!job.metadata || job.strata < 0 || job.strata > strataCount)
         return errorAt(job, ErrorCode::invalidArgument, "a decoding job without metadata or strata");
-    return job.strata == 0 ? decodeBlock(job, gate) : decodePicturePart(job, gate);
+    if (job.strata > 0 && job.points.empty())
+        return decodePicturePart(job, gate);
+    STIPPLE_TRY(columns, job.points.empty() ? decodeColumns(job, gate) : decodePoints(job, gate));
+    return columnNode(job, std::move(columns));
 }
 
 std::unique_ptr<NodeDecoder> makeInlineDecoder() {

@@ -25,11 +25,15 @@ struct DecodeJob {
     // strata 0, a block of exact colours: what all the node's points show, which they are coded against
     // (shownColours()).
     Bytes shown;
+    // Some points alone are wanted, all that the file says of each (their indices in progressive order, maybe
+    // one twice): `picture` holds all bytes of the node, strata is strataCount.
+    std::vector<std::uint32_t> points;
 };
 
 // Decodes and packs. With strata 0 the node has no positions but columns, of all its points in progressive
-// order: those of the block, or exactColourWords or exactIntensity. Errors: corrupt or truncated, placed at
-// the node's key; cancelled once the gate is closed. Pure; safe on untrusted bytes.
+// order: those of the block, or exactColourWords or exactIntensity. With `points` it has exactPosition and
+// every attribute's column, of those points in their order. Errors: corrupt or truncated, placed at the
+// node's key; cancelled once the gate is closed. Pure; safe on untrusted bytes.
 Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate = nullptr);
 
 class NodeDecoder {

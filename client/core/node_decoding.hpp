@@ -26,7 +26,6 @@ class NodeDecoding {
     void takePicture(CloudLoader& cloud, std::uint32_t node, Loaded& loaded);
     void takeBlock(CloudLoader& cloud, std::uint32_t node, int block, Bytes bytes);
 
-    int pump(std::chrono::milliseconds wait) { return decoder_.pump(wait); }
     bool pending() const { return pending_ > 0; }
     std::uint64_t bytesPending() const { return bytesPending_; }
     bool hasAnswers() const { return !answers_.empty(); }

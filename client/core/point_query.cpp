@@ -1,10 +1,7 @@
 #include "client/core/point_query.hpp"
 
 #include "shared/base/text.hpp"
-#include "shared/format/cloud_file.hpp"
-
 #include <algorithm>
-#include <numeric>
 
 namespace stipple {
 namespace {
@@ -45,33 +42,32 @@ StoredNumber numberAt(AttributeType type, const std::uint8_t* at) {
     return 0.0;
 }
 
-PointValue valueOf(const Attribute& attribute, const Bytes& column, std::size_t index) {
+PointValue valueOf(const Attribute& attribute, const std::uint8_t* at) {
     PointValue value{attribute, {}};
-    const std::uint8_t* at = column.data() + index * attribute.size();
     for (int c = 0; c < attribute.components; ++c, at += attributeTypeSize(attribute.type))
         value.stored.push_back(numberAt(attribute.type, at));
     return value;
 }
 
-PointRecord recordOf(const CloudMetadata& metadata, const PointBatch& batch, std::size_t index) {
+// Of the point at `index` of the columns that a job for points makes.
+PointRecord recordOf(const CloudMetadata& metadata, const NodeColumns& columns, std::size_t index) {
     PointRecord record;
-    record.integers = batch.positions[index];
+    const std::uint8_t* at = columns.column(exactPosition).data() + index * 3 * sizeof(std::int64_t);
+    record.integers = {loadLe<std::int64_t>(at), loadLe<std::int64_t>(at + 8), loadLe<std::int64_t>(at + 16)};
     record.position = metadata.grid.toWorld(record.integers);
-    for (std::size_t a = 0; a < batch.columns.size(); ++a)
-        record.values.push_back(valueOf(metadata.schema.attributes[a], batch.columns[a], index));
+    std::int32_t a = 0;
+    for (const Attribute& attribute : metadata.schema.attributes)
+        record.values.push_back(valueOf(attribute, columns.column(a++).data() + index * attribute.size()));
     return record;
 }
 
-Result<PointBatch> wholeNode(const CloudLoader& cloud, std::uint32_t node, const Result<Bytes>& bytes) {
-    if (!bytes.ok())
-        return bytes.error();
-    const CloudMetadata& metadata = *cloud.opened.metadata;
-    NodeBytes whole;
-    whole.entry = cloud.hierarchy.node(node).entry;
-    whole.attributes.resize(metadata.schema.attributes.size());
-    std::iota(whole.attributes.begin(), whole.attributes.end(), 0);
-    whole.bytes = *bytes;
-    return decodeNode(metadata, whole);
+// What answers to a job for points have to be like; workers send them as bytes.
+bool holdsAll(const CloudMetadata& metadata, const NodeColumns& columns, std::size_t points) {
+    bool whole = columns.column(exactPosition).size() == points * 3 * sizeof(std::int64_t);
+    std::int32_t a = 0;
+    for (const Attribute& attribute : metadata.schema.attributes)
+        whole = whole && columns.column(a++).size() == points * attribute.size();
+    return whole;
 }
 
 } // namespace
@@ -89,14 +85,14 @@ Status PointQueries::ask(const CloudLoader& cloud, const PointIdentity& point) {
     std::uint32_t count = cloud.hierarchy.node(static_cast<std::size_t>(node)).entry.pointCount;
     if (point.index >= count)
         return refused(cat("point ", point.index, " of ", count));
-    asked_.push_back({point, static_cast<std::uint32_t>(node)});
+    asked_.push_back({point, static_cast<std::uint32_t>(node), 0});
     return {};
 }
 
 std::vector<LoadItem> PointQueries::items(const CloudLoader& cloud) const {
     std::vector<std::uint32_t> nodes;
     for (const Question& question : asked_)
-        if (question.point.cloud == cloud.state.id)
+        if (question.batch == 0 && question.point.cloud == cloud.state.id)
             nodes.push_back(question.node);
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -106,16 +102,48 @@ std::vector<LoadItem> PointQueries::items(const CloudLoader& cloud) const {
     return items;
 }
 
-void PointQueries::takeLoaded(const CloudLoader& cloud, std::uint32_t node, const Result<Bytes>& bytes) {
-    Result<PointBatch> points = wholeNode(cloud, node, bytes);
+void PointQueries::takeLoaded(const CloudLoader& cloud, std::uint32_t node, Result<Bytes> bytes) {
+    DecodeJob job;
+    job.cloud = cloud.state.id;
+    job.metadata = cloud.opened.metadata;
+    job.entry = cloud.hierarchy.node(node).entry;
+    std::uint32_t batch = ++lastBatch_;
+    for (Question& question : asked_)
+        if (question.batch == 0 && question.point.cloud == job.cloud && question.node == node) {
+            question.batch = batch;
+            job.points.push_back(question.point.index);
+        }
+    if (job.points.empty())
+        return;
+    if (!bytes.ok()) {
+        answer(batch, [&](std::size_t) { return cloud.placed(bytes.error()); });
+        return;
+    }
+    job.picture = std::move(*bytes);
+    ++decoding_;
+    std::size_t points = job.points.size();
+    decoder_.decode(std::move(job), [this, alive = alive_, batch, points, metadata = cloud.opened.metadata,
+                                     source = cloud.source->name()](Result<ResidentNode> decoded) {
+        if (!*alive)
+            return;
+        --decoding_;
+        if (decoded.ok() && !holdsAll(*metadata, decoded->columns, points))
+            decoded =
+                Error{ErrorCode::corrupt, "a decoder left out attributes of a point", "", "reload the page"};
+        answer(batch, [&](std::size_t n) -> Result<PointRecord> {
+            return decoded.ok() ? Result<PointRecord>(recordOf(*metadata, decoded->columns, n))
+                                : decoded.error().at(source);
+        });
+    });
+}
+
+void PointQueries::answer(std::uint32_t batch,
+                          const std::function<Result<PointRecord>(std::size_t)>& record) {
+    std::size_t n = 0;
     std::erase_if(asked_, [&](const Question& question) {
-        if (question.point.cloud != cloud.state.id || question.node != node)
+        if (question.batch != batch)
             return false;
-        if (points.ok())
-            answers_.push_back(
-                {question.point, recordOf(*cloud.opened.metadata, *points, question.point.index)});
-        else
-            answers_.push_back({question.point, cloud.placed(points.error())});
+        answers_.push_back({question.point, record(n++)});
         return true;
     });
 }

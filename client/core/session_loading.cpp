@@ -27,8 +27,8 @@ std::string keyText(const CloudLoader& cloud, std::uint32_t node) {
 
 SessionLoading::SessionLoading(NodeDecoder& decoder, SessionCounters& counters, const ViewSession::Now& now)
     : counters_(counters), now_(now),
-      queue_(counters, static_cast<std::uint64_t>(now().time_since_epoch().count())),
-      decoding_(decoder, cache_, counters) {}
+      queue_(counters, static_cast<std::uint64_t>(now().time_since_epoch().count())), decoder_(decoder),
+      decoding_(decoder, cache_, counters), pointQueries_(decoder) {}
 
 SessionLoading::~SessionLoading() {
     for (auto& [id, cloud] : clouds_)
@@ -103,8 +103,8 @@ int SessionLoading::pumpAll(std::chrono::milliseconds wait) {
     for (auto& [id, cloud] : clouds_)
         if (queue_.awaits(id))
             delivered += cloud.source->pump(delivered == 0 ? wait : std::chrono::milliseconds{});
-    if (decoding_.pending())
-        delivered += decoding_.pump(delivered == 0 ? wait : std::chrono::milliseconds{});
+    if (isDecoding())
+        delivered += decoder_.pump(delivered == 0 ? wait : std::chrono::milliseconds{});
     return delivered;
 }
 
@@ -114,9 +114,9 @@ bool SessionLoading::hasArrivals() const {
 
 // Things that pump() could wait for.
 std::ptrdiff_t SessionLoading::awaited() const {
-    return (decoding_.pending() ? 1 : 0) +
-           std::count_if(clouds_.begin(), clouds_.end(),
-                         [&](const auto& cloud) { return queue_.awaits(cloud.first); });
+    return (isDecoding() ? 1 : 0) + std::count_if(clouds_.begin(), clouds_.end(), [&](const auto& cloud) {
+               return queue_.awaits(cloud.first);
+           });
 }
 
 void SessionLoading::deliver(std::chrono::milliseconds wait) {
@@ -128,7 +128,7 @@ void SessionLoading::deliver(std::chrono::milliseconds wait) {
         bool pausing = queue_.nextRetry() != LoadQueue::Clock::time_point::max();
         if (left.count() <= 0 || (pausing && queue_.nextRetry() <= now_()))
             return;
-        if (queue_.requestsInFlight() > 0 || decoding_.pending())
+        if (queue_.requestsInFlight() > 0 || isDecoding())
             pumpAll(std::min(left, awaited() == 1 ? left : waitSlice));
         else if (pausing)
             std::this_thread::sleep_for(std::min(left, waitSlice));
@@ -148,8 +148,7 @@ bool SessionLoading::anyInterrupted() const {
 }
 
 bool SessionLoading::idle() const {
-    return !anyOpening() && local_.empty() && !decoding_.hasAnswers() && !decoding_.pending() &&
-           queue_.idle();
+    return !anyOpening() && local_.empty() && !decoding_.hasAnswers() && !isDecoding() && queue_.idle();
 }
 
 // --- asking --------------------------------------------------------------------------------------------
@@ -217,7 +216,7 @@ void SessionLoading::takeLoaded(Loaded& loaded, Arrivals& arrivals) {
     }
     arrivals.changed = true;
     if (loaded.item.key.kind == LoadKind::points && (loaded.bytes.ok() || !isFatal(loaded.bytes.error()))) {
-        pointQueries_.takeLoaded(cloud, node, loaded.bytes);
+        pointQueries_.takeLoaded(cloud, node, std::move(loaded.bytes));
         return;
     }
     if (!loaded.bytes.ok()) {

@@ -73,6 +73,7 @@ class SessionLoading {
   private:
     int pumpAll(std::chrono::milliseconds wait);
     bool hasArrivals() const;
+    bool isDecoding() const { return decoding_.pending() || pointQueries_.decoding(); }
     std::ptrdiff_t awaited() const;
     void takeLoaded(Loaded& loaded, Arrivals& arrivals);
     void takeRegion(CloudLoader& cloud, Loaded& loaded);
@@ -89,6 +90,7 @@ class SessionLoading {
     NodeCache cache_;
     KeptBytes kept_;
     LoadQueue queue_;
+    NodeDecoder& decoder_;
     NodeDecoding decoding_;
     PointQueries pointQueries_;
     RegionScans regionScans_;

@@ -1,34 +1,22 @@
 #include "client/web/decode_messages.hpp"
 
 #include "client/web/entry_message.hpp"
+#include "client/web/message_text.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace stipple::web {
 namespace {
 
-constexpr std::uint32_t jobMark = 0x314A4253;    // "SBJ1"
+constexpr std::uint32_t jobMark = 0x324A4253;    // "SBJ2"
 constexpr std::uint32_t answerMark = 0x31414253; // "SBA1"
-constexpr std::uint32_t maxTextBytes = 1 << 16;
-constexpr std::uint32_t maxPoints = 1u << 28; // four words each still fit the address space
+constexpr std::uint32_t maxPoints = 1u << 28;    // four words each still fit the address space
 constexpr std::uint64_t maxColumnBytes = 1ull << 31;
 constexpr int wordArrayCount = nodeArrayCount - 1; // and the columns' values
 static_assert(sizeof(NodeColumn) == 8);
 
 Error damaged(const char* what) {
     return {ErrorCode::corrupt, what, "decoding worker", "reload the page"};
-}
-
-void writeText(ByteWriter& out, const std::string& text) {
-    auto size = static_cast<std::uint32_t>(std::min<std::size_t>(text.size(), maxTextBytes));
-    out.write(size);
-    out.writeBytes({reinterpret_cast<const std::uint8_t*>(text.data()), size});
-}
-
-std::string readText(ByteReader& in) {
-    ByteSpan part = in.readBytes(in.read<std::uint32_t>());
-    return {reinterpret_cast<const char*>(part.data()), part.size()};
 }
 
 // With the values' size, to be filled.
@@ -66,6 +54,9 @@ Bytes encodeJob(const DecodeJob& job) {
     writeEntry(out, job.entry);
     out.write(static_cast<std::int32_t>(job.strata));
     out.write(job.block);
+    out.write(static_cast<std::uint32_t>(job.points.size()));
+    for (std::uint32_t point : job.points)
+        out.write(point);
     return out.take();
 }
 
@@ -79,6 +70,12 @@ Result<DecodeJob> decodeJob(ByteSpan message) {
         return damaged("a decoding job names more blocks than it holds");
     job.strata = in.read<std::int32_t>();
     job.block = in.read<std::int32_t>();
+    std::uint32_t points = in.read<std::uint32_t>();
+    if (points > in.remaining() / sizeof(std::uint32_t))
+        return damaged("a decoding job names more points than it holds");
+    job.points.resize(points);
+    for (std::uint32_t& point : job.points)
+        point = in.read<std::uint32_t>();
     if (!in.ok() || in.remaining() != 0 || job.strata < 0 || job.strata > strataCount)
         return damaged("a decoding job has the wrong length");
     return job;

@@ -1,4 +1,5 @@
-// A session over scripted sources, with an inline decoder and a clock that goes on by a second an update.
+// A session over scripted sources, with an inline decoder unless told otherwise, and a clock that goes on by
+// a second an update.
 #pragma once
 
 #include "client/core/view_session.hpp"
@@ -15,10 +16,12 @@ namespace stipple::test {
 
 struct SessionFixture {
     std::chrono::steady_clock::time_point now;
-    std::unique_ptr<NodeDecoder> decoder = makeInlineDecoder();
+    std::unique_ptr<NodeDecoder> decoder;
     std::unique_ptr<ViewSession> session;
 
-    explicit SessionFixture(const SessionLimits& limits = {}) {
+    explicit SessionFixture(const SessionLimits& limits = {},
+                            std::unique_ptr<NodeDecoder> decodes = makeInlineDecoder())
+        : decoder(std::move(decodes)) {
         session = ViewSession::create(*decoder, limits, [this] { return now; });
         session->setViewport(800, 600);
     }

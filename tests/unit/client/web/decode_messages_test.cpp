@@ -50,6 +50,11 @@ TEST_CASE("a decoding job arrives as it was sent") {
     CHECK(back->entry.attributeBytes == job.entry.attributeBytes);
     CHECK(back->strata == 2);
     CHECK(back->block == 3);
+    CHECK(back->points.empty());
+    job.points = {4, 0, 12344};
+    auto points = web::decodeJob(web::encodeJob(job));
+    REQUIRE(points.ok());
+    CHECK(points->points == job.points);
 }
 
 TEST_CASE("an answer brings a node whose arrays have their sizes") {
