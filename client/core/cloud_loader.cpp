@@ -36,6 +36,11 @@ void CloudLoader::advanceOpening() {
     state.stage = CloudStage::ready;
 }
 
+Bytes CloudLoader::metadataBlock() const {
+    std::optional<ByteSpan> block = ready() ? fetched.find(opened.metadataBlock) : std::nullopt;
+    return block ? Bytes(block->begin(), block->end()) : Bytes();
+}
+
 Error CloudLoader::placed(const Error& error) const {
     // Sources name themselves; the core's own errors name the node.
     return error.where.starts_with(source->name()) ? error : error.at(source->name());

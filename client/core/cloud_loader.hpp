@@ -46,6 +46,9 @@ struct CloudLoader {
     // World box of its points, as far as it is known; empty: not at all.
     BoxD place() const { return ready() ? opened.metadata->worldBounds() : state.expected; }
 
+    // Empty unless ready.
+    Bytes metadataBlock() const;
+
     // Opens as far as the fetched bytes allow; the state afterwards says how far.
     void advanceOpening();
     void fail(const Error& error);

@@ -57,6 +57,7 @@ class StippleNodeSource final : public NodeSource {
         STIPPLE_CHECK(checkVersion(header, metadata));
         OpenedCloud cloud;
         cloud.fileBytes = header.fileBytes;
+        cloud.metadataBlock = header.metadata;
         cloud.metadata = std::make_shared<const CloudMetadata>(std::move(metadata));
         STIPPLE_TRY(nodes, parseChunk(cloud, *fetched.find(header.rootChunk)));
         cloud.rootNodes = std::move(nodes);

@@ -38,6 +38,7 @@ class FetchedRanges {
 struct OpenedCloud {
     std::shared_ptr<const CloudMetadata> metadata;
     std::uint64_t fileBytes = 0;
+    ByteRange metadataBlock;          // of what was fetched: what parseMetadata() took
     std::vector<NodeEntry> rootNodes; // of the first piece of the hierarchy, parents before children
 };
 

@@ -58,6 +58,11 @@ class Session final : public ViewSession {
         return states;
     }
 
+    Bytes metadataBlock(CloudId id) const override {
+        auto cloud = loading_.clouds().find(id);
+        return cloud == loading_.clouds().end() ? Bytes() : cloud->second.metadataBlock();
+    }
+
     BoxD contentBounds() const override { return shownBounds(loading_.clouds()); }
 
     void setViewport(int width, int height) override {

@@ -95,6 +95,8 @@ class ViewSession {
     virtual void removeCloud(CloudId id) = 0; // cancels its requests, frees its nodes
     virtual void setVisible(CloudId id, bool visible) = 0;
     virtual std::vector<CloudState> clouds() const = 0;
+    // As its file has it, for parseMetadata() in another program; empty where the cloud is not ready.
+    virtual Bytes metadataBlock(CloudId id) const = 0;
     // World box of the visible clouds, as far as it is known: of those that are not open yet, what they were
     // said to fill. Empty if there are none.
     virtual BoxD contentBounds() const = 0;

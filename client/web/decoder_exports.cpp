@@ -1,7 +1,7 @@
 // The program of a decoding worker: decodeNode, called from www/src/wasm/decoder_worker.ts. It keeps the
 // metadata of each cloud and the latest answer, whose arrays the worker copies out before the next call.
+#include "client/web/cloud_message.hpp"
 #include "client/web/decode_messages.hpp"
-#include "shared/format/cloud_file.hpp"
 
 #include <emscripten/emscripten.h>
 
@@ -34,7 +34,7 @@ extern "C" {
 
 EMSCRIPTEN_KEEPALIVE void stipple_describe_cloud(std::uint32_t cloud, const std::uint8_t* at,
                                                  std::size_t size) {
-    Result<CloudMetadata> parsed = parseMetadata({at, size});
+    Result<CloudMetadata> parsed = web::decodeCloud({at, size});
     clouds.insert_or_assign(
         cloud, parsed.ok() ? Result<SharedMetadata>(std::make_shared<const CloudMetadata>(std::move(*parsed)))
                            : Result<SharedMetadata>(parsed.error()));

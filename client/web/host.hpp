@@ -16,8 +16,8 @@ void stippleHostReadFile(std::uint32_t request, std::uint32_t file, double offse
 void stippleHostAbort(std::uint32_t request); // no answer comes any more
 void stippleHostCloseFile(std::uint32_t file);
 
-// Every worker keeps the metadata of cloud `cloud`, or forgets it.
-void stippleHostDescribeCloud(std::uint32_t cloud, const std::uint8_t* metadata, std::size_t size);
+// Every worker keeps what `message` (client/web/cloud_message.hpp) says of cloud `cloud`, or forgets it.
+void stippleHostDescribeCloud(std::uint32_t cloud, const std::uint8_t* message, std::size_t size);
 void stippleHostForgetCloud(std::uint32_t cloud);
 // Has a worker decode a job; the bytes are copied before this returns. Answered by stipple_decode_answer.
 void stippleHostDecode(std::uint32_t job, const std::uint8_t* message, std::size_t messageSize,

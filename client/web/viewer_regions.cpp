@@ -4,7 +4,6 @@
 #include "client/core/region_json.hpp"
 #include "client/web/region_messages.hpp"
 #include "client/web/viewer.hpp"
-#include "shared/format/file_parts.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -15,10 +14,7 @@ constexpr std::size_t maxScannedAttributes = 4096;
 }
 
 Bytes Viewer::metadataOf(CloudId id) const {
-    for (const CloudState& cloud : session_->clouds())
-        if (cloud.id == id && cloud.metadata)
-            return writeMetadata(*cloud.metadata);
-    return {};
+    return session_->metadataBlock(id);
 }
 
 Result<RegionScanId> Viewer::scanRegion(std::string_view text) {

@@ -1,8 +1,8 @@
 #include "client/web/worker_decoder.hpp"
 
+#include "client/web/cloud_message.hpp"
 #include "client/web/decode_messages.hpp"
 #include "client/web/host.hpp"
-#include "shared/format/file_parts.hpp"
 
 namespace stipple::web {
 
@@ -66,8 +66,8 @@ void WorkerDecoder::describe(const DecodeJob& job) {
     if (known == job.metadata)
         return;
     known = job.metadata;
-    Bytes block = writeMetadata(*job.metadata);
-    stippleHostDescribeCloud(job.cloud, block.data(), block.size());
+    Bytes message = encodeCloud(*job.metadata);
+    stippleHostDescribeCloud(job.cloud, message.data(), message.size());
 }
 
 void WorkerDecoder::ready(std::uint32_t job, Result<ResidentNode> result) {

@@ -50,6 +50,7 @@ struct AttributeStatistics {
 
 // The colour that travels with positions in a node's strata.
 enum class PictureColour : std::uint8_t { none, rgb, intensity };
+inline constexpr std::array<const char*, 3> pictureColourNames{"none", "rgb", "intensity"};
 
 // What the picture of an inner node shows: its points' own colours, or the mean colour of the area that each
 // stands for (converter/build/mean_colour.hpp). Then the exact ones are in a block of their own.

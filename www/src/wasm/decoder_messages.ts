@@ -2,7 +2,7 @@
 
 export type ToDecoder =
     | { kind: 'program'; program: WebAssembly.Module }
-    | { kind: 'describe'; cloud: number; metadata: Uint8Array<ArrayBuffer> }
+    | { kind: 'describe'; cloud: number; description: Uint8Array<ArrayBuffer> }
     | { kind: 'forget'; cloud: number }
     | {
           kind: 'decode';

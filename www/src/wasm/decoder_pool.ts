@@ -25,9 +25,9 @@ export class DecoderPool {
         void this.share();
     }
 
-    describe(cloud: number, metadata: Uint8Array): void {
+    describe(cloud: number, description: Uint8Array): void {
         for (const hand of this.hands)
-            this.send(hand, { kind: 'describe', cloud, metadata: new Uint8Array(metadata) });
+            this.send(hand, { kind: 'describe', cloud, description: new Uint8Array(description) });
     }
 
     forget(cloud: number): void {

@@ -52,8 +52,8 @@ function handle(message: ToDecoder): void {
     const { program, heap } = decoder;
     switch (message.kind) {
         case 'describe':
-            heap.lend([message.metadata], (at) =>
-                program._stipple_describe_cloud(message.cloud, at!, message.metadata.length),
+            heap.lend([message.description], (at) =>
+                program._stipple_describe_cloud(message.cloud, at!, message.description.length),
             );
             break;
         case 'forget':

@@ -91,8 +91,8 @@ export class Host {
         this.requests.delete(request);
     }
 
-    describeCloud(cloud: number, metadata: Uint8Array): void {
-        this.decoders.describe(cloud, metadata);
+    describeCloud(cloud: number, description: Uint8Array): void {
+        this.decoders.describe(cloud, description);
     }
 
     forgetCloud(cloud: number): void {

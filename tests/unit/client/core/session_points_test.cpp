@@ -1,6 +1,6 @@
 #include "client/core/view_session.hpp"
 
-#include "shared/format/cloud_file.hpp"
+#include "shared/format/file_parts.hpp"
 #include "shared/io/memory_source.hpp"
 #include "tests/support/session_fixture.hpp"
 
@@ -193,4 +193,18 @@ TEST_CASE("a point that its node does not have is refused by whoever decodes") {
     auto refused = decodeNode(job);
     REQUIRE_FALSE(refused.ok());
     CHECK(refused.error().code == ErrorCode::invalidArgument);
+}
+
+TEST_CASE("the metadata of a cloud that is open can be handed on as its file has it") {
+    SessionFixture fixture(everything());
+    CHECK(fixture.session->metadataBlock(1).empty());
+    fixture.openAndFit(smallCloud());
+    CloudId id = fixture.session->clouds()[0].id;
+    CHECK(fixture.session->metadataBlock(id).empty()); // not open yet
+    REQUIRE(fixture.settle());
+    Bytes block = fixture.session->metadataBlock(id);
+    auto metadata = parseMetadata(block);
+    REQUIRE(metadata.ok());
+    CHECK(metadata->pointHash == smallCloud().metadata.pointHash);
+    CHECK(block == writeMetadata(*metadata));
 }
