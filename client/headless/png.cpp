@@ -57,6 +57,7 @@ class RowWriter final : public PngWriter {
             png_set_write_fn(png_, this, &RowWriter::write, nullptr);
             png_set_IHDR(png_, info_, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                          PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+            png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
             png_write_info(png_, info_);
             png_set_filler(png_, 0, PNG_FILLER_AFTER);
         }));

@@ -18,7 +18,7 @@ inline constexpr std::uint64_t maxPngPixels = 1ull << 28;
 // Takes the next bytes of a file.
 using TakeBytes = std::function<Status(ByteSpan)>;
 
-// A PNG of RGB pixels, written as its rows come.
+// A PNG of sRGB pixels, written as its rows come.
 class PngWriter {
   public:
     // Errors: of `take`; invalidArgument for a picture without pixels, or too wide for libpng (a million).

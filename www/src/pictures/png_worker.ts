@@ -40,6 +40,7 @@ function begin(message: ToPngWorker & { kind: 'begin' }): void {
     header[8] = 8; // bits
     header[9] = 2; // R, G, B
     sendChunk('IHDR', header);
+    sendChunk('sRGB', new Uint8Array([0])); // perceptual
     const stream = new CompressionStream('deflate');
     deflate = stream.writable.getWriter();
     deflated = passOn(stream.readable.getReader());
