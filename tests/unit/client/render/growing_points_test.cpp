@@ -175,3 +175,28 @@ TEST_CASE("a node with too few of its points counts as awaited, for its own poin
     for (int size64 : softwareSizes(scene.plan, leaf).size64)
         CHECK(std::abs(size64 - expected) <= 1);
 }
+
+TEST_CASE("a point is picked where it has grown to", "[software]") {
+    TestNode node;
+    node.nodeBits = 2;
+    node.points = {{1, 1, 1}};
+    node.key = {8, 3, 3, 3};
+    node.spacing = 100;
+    TestView view;
+    view.projection = Projection::orthographic;
+    FramePlan plan = testPlan({node}, view, fixedStyle(10));
+    plan.awaited = {{plan.nodes[0].cloud, node.key.child(0)}};
+    REQUIRE(rasterFrame(plan).growing);
+    auto renderer = SoftwareRenderer::create(1);
+    renderer->render(plan);
+    std::vector<float> distances = renderer->distances();
+    std::size_t shown = 0;
+    for (int y = 0; y < plan.height; ++y)
+        for (int x = 0; x < plan.width; ++x) {
+            bool shows = distances[static_cast<std::size_t>(y * plan.width + x)] > 0;
+            INFO("pixel " << x << ", " << y);
+            CHECK(renderer->pick(plan, {x + 0.5, y + 0.5, 0}).has_value() == shows);
+            shown += shows;
+        }
+    CHECK(shown > 250); // 20 pixels wide; 10 would be 79
+}
