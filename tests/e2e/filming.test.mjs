@@ -103,6 +103,17 @@ const limitPieces = (page, side) =>
             return name === this.MAX_TEXTURE_SIZE ? most : get.call(this, name);
         };
     }, side);
+/** As if the canvas held no more columns than that, whatever it is asked for. */
+const limitCanvas = (page, columns) =>
+    page.evaluate((most) => {
+        const own = (window.realWidth ??= Object.getOwnPropertyDescriptor(WebGL2RenderingContext.prototype, 'drawingBufferWidth'));
+        Object.defineProperty(WebGL2RenderingContext.prototype, 'drawingBufferWidth', {
+            ...own,
+            get() {
+                return Math.min(most, own.get.call(this));
+            },
+        });
+    }, columns);
 const isPng = (file) => file.subarray(-8, -4).toString('latin1') === 'IEND';
 const notice = (page, text) => page.getByRole('alert').filter({ hasText: text }).first();
 
@@ -128,6 +139,9 @@ describe('pictures larger than the graphics system draws at once', () => {
             const before = await readPixels(page);
             await limitPieces(page, 4096);
             const whole = await pictureOf(page);
+            await limitCanvas(page, 499);
+            assert.equal(Buffer.compare((await pictureOf(page)).rgba, whole.rgba), 0, 'the canvas is too small');
+            await limitCanvas(page, 1e9);
             await limitPieces(page, 200);
             const parts = await pictureOf(page);
             assert.deepEqual([parts.width, parts.height], [500, 375]);

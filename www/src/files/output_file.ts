@@ -108,7 +108,12 @@ class DiskFile implements OutputFile {
     ) {}
 
     static async create(handle: Handle): Promise<DiskFile> {
-        return told(handle, async () => new DiskFile(handle, await handle.createWritable()));
+        try {
+            return await told(handle, async () => new DiskFile(handle, await handle.createWritable()));
+        } catch (error) {
+            await removeEmpty(handle);
+            throw error;
+        }
     }
 
     async write(bytes: Uint8Array<ArrayBuffer>): Promise<void> {
@@ -123,10 +128,14 @@ class DiskFile implements OutputFile {
     }
     async giveUp(): Promise<void> {
         await this.to.abort().catch(() => undefined); // it may have failed already, which leaves as little
-        const left = await this.handle.getFile().catch(() => undefined);
-        // The picker makes an empty file where there was none.
-        if (left?.size === 0) await this.handle.remove?.().catch(() => undefined);
+        await removeEmpty(this.handle);
     }
+}
+
+/** The picker makes an empty file where there was none. */
+async function removeEmpty(handle: Handle): Promise<void> {
+    const left = await handle.getFile().catch(() => undefined);
+    if (left?.size === 0) await handle.remove?.().catch(() => undefined);
 }
 
 async function told<T>(handle: FileSystemFileHandle, act: () => Promise<T>): Promise<T> {

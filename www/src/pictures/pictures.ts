@@ -81,13 +81,16 @@ export async function withSize<T>(model: Model, size: Size, work: (picture: Held
     checkSize(size);
     const { surface } = model, { canvas, viewer } = surface, { width, height } = size;
     if (surface.held) throw new Problem('picture.busy');
-    const side = largestPiece(canvas), inParts = Math.max(width, height) > side;
-    const style = viewer.style(), factor = height / canvas.height;
+    const side = largestPiece(canvas), style = viewer.style(), factor = height / canvas.height;
+    let inParts = Math.max(width, height) > side;
     try {
         surface.hold(size, inParts);
         const { drawingBufferWidth, drawingBufferHeight } = canvas.getContext('webgl2')!;
-        if (!inParts && (drawingBufferWidth !== width || drawingBufferHeight !== height))
-            throw new Problem('picture.graphics', { width: drawingBufferWidth, height: drawingBufferHeight });
+        if (!inParts && (drawingBufferWidth !== width || drawingBufferHeight !== height)) {
+            inParts = true; // the canvas holds less than it should
+            surface.letGo(model.frames);
+            surface.hold(size, inParts);
+        }
         if (factor !== 1)
             viewer.setStyle({
                 sizePixels: Math.min(mostSize, style.sizePixels * factor),

@@ -381,7 +381,6 @@ export const english = {
     'picture.width': 'Width of the picture',
     'picture.height': 'Height of the picture',
     'picture.size': 'A picture has whole numbers of pixels, at most {most} a side.',
-    'picture.graphics': 'The graphics system draws at most {width} × {height} pixels: take a smaller picture.',
     'picture.busy': 'Pictures are being written: wait until they are, or stop it.',
     'picture.giveUp': 'Give up ({share} %)',
     'file.givenUp': '{name} was given up; nothing of it was kept.',

@@ -384,7 +384,6 @@ export const french = translation({
     'picture.width': 'Largeur de l’image',
     'picture.height': 'Hauteur de l’image',
     'picture.size': 'Une image a un nombre entier de pixels, au plus {most} par côté.',
-    'picture.graphics': 'Le système graphique dessine au plus {width} × {height} pixels : prenez une image plus petite.',
     'picture.busy': 'Des images sont en cours d’écriture : attendez, ou arrêtez-la.',
     'picture.giveUp': 'Abandonner ({share} %)',
     'file.givenUp': '{name} a été abandonné ; rien n’en a été gardé.',

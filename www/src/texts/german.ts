@@ -384,7 +384,6 @@ export const german = translation({
     'picture.width': 'Breite des Bildes',
     'picture.height': 'Höhe des Bildes',
     'picture.size': 'Ein Bild hat ganze Zahlen von Pixeln, höchstens {most} je Seite.',
-    'picture.graphics': 'Die Grafik zeichnet höchstens {width} × {height} Pixel: nehmen Sie ein kleineres Bild.',
     'picture.busy': 'Es werden gerade Bilder geschrieben: warten Sie, oder brechen Sie ab.',
     'picture.giveUp': 'Abbrechen ({share} %)',
     'file.givenUp': '{name} wurde abgebrochen; nichts davon blieb.',

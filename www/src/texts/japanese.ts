@@ -379,7 +379,6 @@ export const japanese = translation({
     'picture.width': '画像の幅',
     'picture.height': '画像の高さ',
     'picture.size': '画像の画素数は整数で、1 辺は最大 {most} です。',
-    'picture.graphics': '描画できるのは最大 {width}×{height} 画素です。小さい画像にしてください。',
     'picture.busy': '画像を書き出し中です。終わるまで待つか、中止してください。',
     'picture.giveUp': '中止({share} %)',
     'file.givenUp': '{name} を中止しました。何も残していません。',
