@@ -113,16 +113,16 @@ bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata) {
     });
 }
 
-std::string lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName) {
+Phrase lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName) {
     if (style.shape != PointShape::disc)
         return {};
     bool singlePixels =
         style.sizeMode == PointSizeMode::fixed && std::max(style.sizePixels, style.minSizePixels) <= 1;
     if (normalAttributes(metadata.schema))
         return singlePixels
-                   ? "points of a single pixel have no shape: discs show from a sizePixels above 1 on"
-                   : "";
-    return cat(cloudName,
+                   ? say("points of a single pixel have no shape: discs show from a sizePixels above 1 on")
+                   : Phrase();
+    return say(cloudName,
                " has no normals (attributes NormalX, NormalY, NormalZ, or nx, ny, nz): its points are "
                "drawn as circles, not as discs");
 }

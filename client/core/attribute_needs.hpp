@@ -30,7 +30,7 @@ bool hidesAll(const ColourStyle& style, const CloudMetadata& metadata);
 
 // What the style asks for that can't be shown of the cloud, and what is drawn instead: a sentence. Empty:
 // nothing.
-std::string lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName);
+Phrase lackOf(const Style& style, const CloudMetadata& metadata, std::string_view cloudName);
 
 // Bytes of a point's columns in the blocks of `needs`.
 std::uint32_t columnBytes(const AttributeNeeds& needs, const CloudMetadata& metadata);

@@ -17,22 +17,22 @@ constexpr double turn = 2 * std::numbers::pi;
 // Views nearer to the pole than this have no heading of their own: what is right in the picture tells it.
 constexpr double poleSlack = 1e-6;
 
-Error refused(std::size_t index, std::string what) {
+Error refused(std::size_t index, Phrase what) {
     return {ErrorCode::invalidArgument, std::move(what), cat("keyframes[", index, "]"), ""};
 }
 
 Status checked(const std::vector<Keyframe>& keyframes) {
     if (keyframes.empty() || keyframes.size() > maxKeyframes)
-        return Error{ErrorCode::invalidArgument, cat("a camera path has 1 to ", maxKeyframes, " keyframes"),
+        return Error{ErrorCode::invalidArgument, say("a camera path has 1 to ", maxKeyframes, " keyframes"),
                      "keyframes", ""};
     for (std::size_t i = 0; i < keyframes.size(); ++i) {
         const Camera& camera = keyframes[i].camera;
         if (!isUsable(camera) || camera.position == camera.target || length(camera.up) == 0)
-            return refused(i, "the camera looks nowhere: its position, target and up must say where to");
+            return refused(i, say("the camera looks nowhere: its position, target and up must say where to"));
         if (camera.projection != keyframes[0].camera.projection)
-            return refused(i, "the cameras of a path must all be perspective, or all orthographic");
+            return refused(i, say("the cameras of a path must all be perspective, or all orthographic"));
         if (i > 0 && !(keyframes[i].seconds > 0 && keyframes[i].seconds <= longestSeconds))
-            return refused(i, cat("'seconds' must be more than 0 and at most ", longestSeconds));
+            return refused(i, say("'seconds' must be more than 0 and at most ", longestSeconds));
     }
     return {};
 }

@@ -16,16 +16,16 @@ void CloudLoader::advanceOpening() {
         // Asked for again although it was fetched: the file is shorter than it says.
         if (openingNeeds == *needed)
             return fail({ErrorCode::truncated,
-                         cat("the file ends before byte ", needed->end(), ", which its header names"), "",
-                         "fetch or convert it again"});
+                         say("the file ends before byte ", needed->end(), ", which its header names"), "",
+                         say("fetch or convert it again")});
         openingNeeds = *needed;
         return;
     }
     opened = std::move(std::get<OpenedCloud>(*step));
     if (source->sizeBytes() > 0 && source->sizeBytes() != opened.fileBytes)
         return fail({ErrorCode::truncated,
-                     cat("the file has ", source->sizeBytes(), " bytes instead of ", opened.fileBytes), "",
-                     "fetch or convert it again"});
+                     say("the file has ", source->sizeBytes(), " bytes instead of ", opened.fileBytes), "",
+                     say("fetch or convert it again")});
     Result<Hierarchy> created = Hierarchy::create(opened.metadata, std::move(opened.rootNodes));
     if (!created.ok())
         return fail(created.error());

@@ -62,10 +62,10 @@ Status readMixed(const json& item, const std::string& path, ColourStyle& style) 
     FieldReader fields(item, path);
     fields.choice("colourMode", one.mode, colourModes);
     if (one.mode == ColourMode::mix)
-        fields.fail("colourMode", "can't be a mix inside a mix");
+        fields.fail("colourMode", say("can't be a mix inside a mix"));
     fields.text("attribute", one.attribute);
     if (one.mode == ColourMode::attribute && one.attribute.empty())
-        fields.fail("attribute", "must name the attribute");
+        fields.fail("attribute", say("must name the attribute"));
     fields.range("range", one.range);
     fields.number("weight", one.weight, 1e-6, 1e6);
     style.mix.push_back(std::move(one));
@@ -74,7 +74,7 @@ Status readMixed(const json& item, const std::string& path, ColourStyle& style) 
 
 Status readClass(const json& item, const std::string& path, ColourStyle& style) {
     if (!item.is_number_integer() || item < 0 || item > 255)
-        return Error{ErrorCode::invalidArgument, "a class is a whole number from 0 to 255", path, ""};
+        return Error{ErrorCode::invalidArgument, say("a class is a whole number from 0 to 255"), path, ""};
     style.hiddenClasses.set(item.get<std::size_t>());
     return {};
 }
@@ -84,11 +84,11 @@ Status readFilter(const json& item, const std::string& path, ColourStyle& style)
     FieldReader fields(item, path);
     fields.text("attribute", filter.attribute);
     if (filter.attribute.empty())
-        fields.fail("attribute", "must name an attribute");
+        fields.fail("attribute", say("must name an attribute"));
     fields.limit("min", filter.min, -infinity);
     fields.limit("max", filter.max, infinity);
     if (filter.min > filter.max)
-        fields.fail("min", "must not exceed max");
+        fields.fail("min", say("must not exceed max"));
     style.filters.push_back(std::move(filter));
     return fields.finish();
 }
@@ -105,11 +105,11 @@ void readTurn(FieldReader& fields, const json& item, ClipBox& box) {
     std::array<double, 4> rotation{};
     if (fields.numbersOf("rotation", rotation, 1e100)) {
         if (item.contains("axes"))
-            return fields.fail("axes", "can't be given beside a rotation");
+            return fields.fail("axes", say("can't be given beside a rotation"));
         if (auto axes = axesOfQuaternion(rotation[0], rotation[1], rotation[2], rotation[3]))
             box.axes = *axes;
         else
-            fields.fail("rotation", "must not be zero");
+            fields.fail("rotation", say("must not be zero"));
     }
     std::size_t at = 0;
     fields.list("axes", 3, [&](const json& axis, const std::string& path) -> Status {
@@ -119,7 +119,7 @@ void readTurn(FieldReader& fields, const json& item, ClipBox& box) {
         return vector.finish();
     });
     if (at != 0 && (at != 3 || !isOrthonormal(box.axes)))
-        fields.fail("axes", "must be three unit vectors at right angles");
+        fields.fail("axes", say("must be three unit vectors at right angles"));
 }
 
 Status readClipBox(const json& item, const std::string& path, ColourStyle& style) {
@@ -129,7 +129,7 @@ Status readClipBox(const json& item, const std::string& path, ColourStyle& style
     fields.vector("centre", box.centre, largestCoordinate);
     fields.vector("halfSize", box.halfSize, largestCoordinate);
     if (std::min({box.halfSize.x, box.halfSize.y, box.halfSize.z}) < 0)
-        fields.fail("halfSize", "must not be negative");
+        fields.fail("halfSize", say("must not be negative"));
     if (item.is_object())
         readTurn(fields, item, box);
     STIPPLE_CHECK(fields.finish());
@@ -152,14 +152,14 @@ Status readClipRegion(const json& item, const std::string& path, ColourStyle& st
     }
     if (clip.shape.isEverywhere())
         return Error{ErrorCode::invalidArgument,
-                     "'region' must be given, with a polygon, line, prism, box or heights", path, ""};
+                     say("'region' must be given, with a polygon, line, prism, box or heights"), path, ""};
     std::size_t corners = clip.shape.cornerCount();
     for (const ClipRegion& other : style.clipRegions)
         corners += other.shape.cornerCount();
     if (corners > maxClipCorners)
         return Error{ErrorCode::limitExceeded,
-                     cat("clip regions may have ", maxClipCorners, " corners together"), path,
-                     "simplify the polygons, or export what lies in them"};
+                     say("clip regions may have ", maxClipCorners, " corners together"), path,
+                     say("simplify the polygons, or export what lies in them")};
     if (auto usable = filterOf(clip.shape); !usable)
         return inRegion(path + ".region", usable.error());
     style.clipRegions.push_back(std::move(clip));
@@ -206,9 +206,9 @@ void readColours(FieldReader& fields, ColourStyle& style) {
     readList(fields, "clipRegions", maxClipRegions, style, &ColourStyle::clipRegions, readClipRegion);
     fields.bytes("highlight", style.highlight);
     if (style.colourMode == ColourMode::attribute && style.attribute.empty())
-        fields.fail("attribute", "must name the attribute that colours the points");
+        fields.fail("attribute", say("must name the attribute that colours the points"));
     if (style.colourMode == ColourMode::mix && style.mix.empty())
-        fields.fail("mix", "must name the colours to mix");
+        fields.fail("mix", say("must name the colours to mix"));
 }
 
 json coloursJson(const ColourStyle& style) {

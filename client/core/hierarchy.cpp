@@ -13,7 +13,7 @@ namespace {
 // Integers up to here are exact in a double, and sums of two of them in an int64.
 constexpr std::int64_t maxGridInteger = std::int64_t{1} << 53;
 
-Error corrupt(const std::string& what) {
+Error corrupt(Phrase what) {
     return {ErrorCode::corrupt, what, "hierarchy", ""};
 }
 
@@ -21,21 +21,21 @@ Status checkGrid(const CloudMetadata& metadata) {
     for (int axis = 0; axis < 3; ++axis) {
         double scale = metadata.grid.scale[axis], offset = metadata.grid.offset[axis];
         if (!(scale > 0) || !std::isfinite(scale) || !std::isfinite(offset))
-            return corrupt("the grid's scale or offset is not a usable number");
+            return corrupt(say("the grid's scale or offset is not a usable number"));
         if (std::abs(static_cast<double>(metadata.rootCube.min[axis])) > static_cast<double>(maxGridInteger))
-            return corrupt("the root cube lies outside the integers that can be drawn");
+            return corrupt(say("the root cube lies outside the integers that can be drawn"));
     }
     if (metadata.rootCube.bits < 0 || metadata.rootCube.bits > maxRootBits)
-        return corrupt(cat("the root cube is 2^", metadata.rootCube.bits, " steps wide"));
+        return corrupt(say("the root cube is 2^", metadata.rootCube.bits, " steps wide"));
     return {};
 }
 
 Status checkEntry(const NodeEntry& entry, const RootCube& cube) {
     int nodeBits = cube.nodeBits(entry.key.level);
     if (entry.key.level > maxLevel || nodeBits < 0 || (entry.childMask != 0 && nodeBits == 0))
-        return corrupt(cat("node ", entry.key.text(), " is smaller than a grid step"));
+        return corrupt(say("node ", entry.key.text(), " is smaller than a grid step"));
     if (entry.pointCount > 0 && nodeBits > maxNodeBits)
-        return corrupt(cat("node ", entry.key.text(), " is too wide to hold points"));
+        return corrupt(say("node ", entry.key.text(), " is too wide to hold points"));
     return {};
 }
 
@@ -48,14 +48,14 @@ Result<Hierarchy> Hierarchy::create(std::shared_ptr<const CloudMetadata> metadat
     hierarchy.bounds_ = metadata->worldBounds();
     hierarchy.metadata_ = std::move(metadata);
     if (rootNodes.empty())
-        return corrupt("the root chunk has no nodes");
+        return corrupt(say("the root chunk has no nodes"));
     STIPPLE_CHECK(hierarchy.append(-1, std::move(rootNodes)));
     return hierarchy;
 }
 
 Status Hierarchy::add(std::size_t parent, std::vector<NodeEntry> nodes) {
     if (nodes_[parent].childrenState != ChildrenState::missing)
-        return corrupt(cat("the children of node ", nodes_[parent].entry.key.text(), " came twice"));
+        return corrupt(say("the children of node ", nodes_[parent].entry.key.text(), " came twice"));
     return append(static_cast<std::int32_t>(parent), std::move(nodes));
 }
 
@@ -79,7 +79,7 @@ Status Hierarchy::append(std::int32_t root, std::vector<NodeEntry> entries) {
         return Status(std::move(error));
     };
     if (entries.size() > maxKnownNodes - std::min(maxKnownNodes, before))
-        return undo({ErrorCode::limitExceeded, cat("more than ", maxKnownNodes, " nodes"), "hierarchy", ""});
+        return undo({ErrorCode::limitExceeded, say("more than ", maxKnownNodes, " nodes"), "hierarchy", ""});
 
     for (NodeEntry& entry : entries) {
         if (Status status = checkEntry(entry, metadata_->rootCube); !status.ok())
@@ -87,27 +87,27 @@ Status Hierarchy::append(std::int32_t root, std::vector<NodeEntry> entries) {
         HierarchyNode node;
         if (root < 0 && nodes_.empty()) {
             if (entry.key != NodeKey{})
-                return undo(corrupt("the first node is not the root"));
+                return undo(corrupt(say("the first node is not the root")));
         } else {
             if (entry.key.level == 0)
-                return undo(corrupt("a second root"));
+                return undo(corrupt(say("a second root")));
             // The parent is the chunk's own parent or a node of this chunk; nothing else may grow.
             node.parent = findFrom(root < 0 ? 0 : root, entry.key.parent());
             bool ours =
                 node.parent >= 0 && (node.parent == root || node.parent >= static_cast<std::int32_t>(before));
             if (!ours)
-                return undo(corrupt(cat("node ", entry.key.text(), " has no parent in its chunk")));
+                return undo(corrupt(say("node ", entry.key.text(), " has no parent in its chunk")));
             HierarchyNode& parent = nodes_[static_cast<std::size_t>(node.parent)];
             auto slot = static_cast<std::size_t>(entry.key.indexInParent());
             bool announced = (parent.entry.childMask >> slot) & 1;
             bool belongsHere = node.parent == root || parent.childrenState == ChildrenState::known;
             if (!announced || !belongsHere || parent.children[slot] >= 0)
-                return undo(corrupt(cat("node ", entry.key.text(), " was not announced, or comes twice")));
+                return undo(corrupt(say("node ", entry.key.text(), " was not announced, or comes twice")));
             parent.children[slot] = static_cast<std::int32_t>(nodes_.size());
         }
         points_ += entry.pointCount;
         if (points_ > metadata_->pointCount)
-            return undo(corrupt(cat("the nodes hold more points than the cloud's ", metadata_->pointCount)));
+            return undo(corrupt(say("the nodes hold more points than the cloud's ", metadata_->pointCount)));
         node.geometry = geometryOf(entry.key);
         if (entry.childMask != 0 && entry.childChunk.size > 0)
             node.childrenState = ChildrenState::missing;
@@ -123,11 +123,11 @@ Status Hierarchy::append(std::int32_t root, std::vector<NodeEntry> entries) {
     };
     for (std::size_t i = before; i < nodes_.size(); ++i)
         if (nodes_[i].childrenState == ChildrenState::known && !complete(nodes_[i]))
-            return undo(corrupt(cat("a child of node ", nodes_[i].entry.key.text(), " is left out")));
+            return undo(corrupt(say("a child of node ", nodes_[i].entry.key.text(), " is left out")));
     if (root >= 0) {
         HierarchyNode& parent = nodes_[static_cast<std::size_t>(root)];
         if (!complete(parent))
-            return undo(corrupt(cat("a child of node ", parent.entry.key.text(), " is left out")));
+            return undo(corrupt(say("a child of node ", parent.entry.key.text(), " is left out")));
         parent.childrenState = ChildrenState::known;
     }
     return {};

@@ -94,7 +94,7 @@ void readEdl(FieldReader& fields, EyeDomeLighting& edl) {
     fields.flag("enabled", edl.enabled);
     fields.number("neighbours", edl.neighbours, 4, 8);
     if (edl.neighbours != 4 && edl.neighbours != 8)
-        fields.fail("neighbours", "must be 4 or 8");
+        fields.fail("neighbours", say("must be 4 or 8"));
     fields.number("radiusPixels", edl.radiusPixels, 0, 100);
     fields.number("strength", edl.strength, 0, 100);
 }
@@ -105,8 +105,8 @@ Result<json> parseJson(std::string_view text, const std::string& what) {
     // The parser tells the position only by exceptions, which WebAssembly is built without.
     json value = json::parse(text.begin(), text.end(), nullptr, false);
     if (value.is_discarded())
-        return Error{ErrorCode::invalidArgument, "this is not valid JSON", what,
-                     "check quotes, commas and brackets"};
+        return Error{ErrorCode::invalidArgument, say("this is not valid JSON"), what,
+                     say("check quotes, commas and brackets")};
     return value;
 }
 
@@ -143,7 +143,7 @@ Result<Style> detail::readStyle(const json& value, const Style& base) {
     fields.number("minSizePixels", style.minSizePixels, 0.01, 1000);
     fields.number("maxSizePixels", style.maxSizePixels, 0.01, 1000);
     if (style.minSizePixels > style.maxSizePixels)
-        fields.fail("minSizePixels", "must not exceed maxSizePixels");
+        fields.fail("minSizePixels", say("must not exceed maxSizePixels"));
     fields.flag("growsWhileLoading", style.growsWhileLoading);
     fields.choice("shape", style.shape, shapes);
     fields.choice("delayedExpansion", style.delayedExpansion, expansions);
@@ -297,11 +297,8 @@ json toJson(const SessionCounters& c) {
 }
 
 json toJson(const Error& error) {
-    return {{"code", errorCodeName(error.code)},
-            {"what", error.what},
-            {"where", error.where},
-            {"advice", error.advice},
-            {"sentence", error.sentence()}};
+    return {{"code", errorCodeName(error.code)}, {"what", error.what.text()},    {"where", error.where},
+            {"advice", error.advice.text()},     {"sentence", error.sentence()}, {"said", error.said()}};
 }
 
 json toJson(const BoxD& box) {

@@ -37,7 +37,7 @@ class FieldReader {
 
     FieldReader(const Json& object, std::string path) : object_(object), path_(std::move(path)) {
         if (!object_.is_object())
-            error_ = Error{ErrorCode::invalidArgument, "an object {…} is expected", path_, ""};
+            error_ = Error{ErrorCode::invalidArgument, say("an object {…} is expected"), path_, ""};
     }
 
     // A field that is read in another way.
@@ -46,7 +46,7 @@ class FieldReader {
     void flag(const char* name, bool& value) {
         if (const Json* field = find(name)) {
             if (!field->is_boolean())
-                return fail(name, "must be true or false");
+                return fail(name, say("must be true or false"));
             value = field->get<bool>();
         }
     }
@@ -57,22 +57,22 @@ class FieldReader {
             if (auto read = numberIn<T>(*field, min, max))
                 value = *read;
             else
-                fail(name, cat("must be ", std::is_integral_v<T> ? "a whole number" : "a number", " from ",
-                               min, " to ", max));
+                fail(name, std::is_integral_v<T> ? say("must be a whole number from ", min, " to ", max)
+                                                 : say("must be a number from ", min, " to ", max));
         }
     }
 
     void vector(const char* name, Vec3d& value, double limit) {
         std::array<double, 3> read{value.x, value.y, value.z};
         if (!numbers(name, read, -limit, limit))
-            return fail(name, "must be three numbers [x, y, z]");
+            return fail(name, say("must be three numbers [x, y, z]"));
         value = {read[0], read[1], read[2]};
     }
 
     void bytes(const char* name, std::array<std::uint8_t, 3>& value) {
         std::array<int, 3> read{value[0], value[1], value[2]};
         if (!numbers(name, read, 0, 255))
-            return fail(name, "must be three whole numbers from 0 to 255");
+            return fail(name, say("must be three whole numbers from 0 to 255"));
         for (std::size_t i = 0; i < 3; ++i)
             value[i] = static_cast<std::uint8_t>(read[i]);
     }
@@ -85,7 +85,7 @@ class FieldReader {
         }
         std::array<double, 2> read{value.min, value.max};
         if (!numbers(name, read, -1e300, 1e300) || read[0] > read[1])
-            return fail(name, "must be [min, max] with min <= max, or null for the cloud's own range");
+            return fail(name, say("must be [min, max] with min <= max, or null for the cloud's own range"));
         value = {read[0], read[1]};
     }
 
@@ -102,13 +102,13 @@ class FieldReader {
             }
             known += (known.empty() ? "" : ", ") + std::string(text);
         }
-        fail(name, "must be one of " + known);
+        fail(name, say("must be one of ", known));
     }
 
     void text(const char* name, std::string& value) {
         if (const Json* field = find(name)) {
             if (!field->is_string())
-                return fail(name, "must be a text");
+                return fail(name, say("must be a text"));
             value = field->get<std::string>();
         }
     }
@@ -120,7 +120,7 @@ class FieldReader {
             return false;
         if (numbers(name, values, -limit, limit))
             return true;
-        fail(name, cat("must be ", N, " numbers"));
+        fail(name, say("must be ", N, " numbers"));
         return false;
     }
 
@@ -133,7 +133,7 @@ class FieldReader {
         if (auto read = numberIn<double>(*field, -1e300, 1e300))
             value = *read;
         else
-            fail(name, "must be a number, or null for none");
+            fail(name, say("must be a number, or null for none"));
     }
 
     // A list of at most `most` items, each taken by `take(item, path)`, which answers a Status. False if it
@@ -144,7 +144,7 @@ class FieldReader {
         if (!field)
             return false;
         if (!field->is_array() || field->size() > most) {
-            fail(name, cat("must be a list of at most ", most));
+            fail(name, say("must be a list of at most ", most));
             return true;
         }
         for (std::size_t i = 0; i < field->size() && !error_; ++i)
@@ -164,9 +164,9 @@ class FieldReader {
         }
     }
 
-    void fail(const char* name, const std::string& expected) {
+    void fail(const char* name, Phrase expected) {
         if (!error_)
-            error_ = Error{ErrorCode::invalidArgument, cat("'", name, "' ", expected), path_, ""};
+            error_ = Error{ErrorCode::invalidArgument, say("'", name, "' ", expected), path_, ""};
     }
 
     Status finish() {
@@ -174,8 +174,8 @@ class FieldReader {
             return *error_;
         for (const auto& item : object_.items())
             if (!known_.count(item.key()))
-                return Error{ErrorCode::invalidArgument, cat("there is no field '", item.key(), "'"), path_,
-                             "the fields are " + knownNames()};
+                return Error{ErrorCode::invalidArgument, say("there is no field '", item.key(), "'"), path_,
+                             say("the fields are ", knownNames())};
         return {};
     }
 

@@ -315,8 +315,8 @@ void LoadQueue::settle(Request& request, Result<Bytes> bytes, Clock::time_point 
         if (size < item.range.size && !item.mayEndEarly) {
             fail(std::move(item),
                  {ErrorCode::truncated,
-                  cat("the file ends inside bytes ", item.range.offset, " to ", item.range.end()), "",
-                  "fetch or convert it again"},
+                  say("the file ends inside bytes ", item.range.offset, " to ", item.range.end()), "",
+                  say("fetch or convert it again")},
                  now, loaded);
             continue;
         }

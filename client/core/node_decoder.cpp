@@ -10,7 +10,7 @@ namespace stipple {
 namespace {
 
 // For what is found here; the decoders of blocks name the node themselves.
-Error errorAt(const DecodeJob& job, ErrorCode code, std::string what) {
+Error errorAt(const DecodeJob& job, ErrorCode code, Phrase what) {
     return {code, std::move(what), "node " + job.entry.key.text(), ""};
 }
 
@@ -18,7 +18,8 @@ Error errorAt(const DecodeJob& job, ErrorCode code, std::string what) {
 Result<NodePicture> shownPicture(const DecodeJob& job) {
     std::size_t channels = job.metadata->pictureColour == PictureColour::rgb ? 3 : 1;
     if (job.shown.size() != job.entry.pointCount * channels * 2)
-        return errorAt(job, ErrorCode::invalidArgument, "exact colours without the colours that are shown");
+        return errorAt(job, ErrorCode::invalidArgument,
+                       say("exact colours without the colours that are shown"));
     NodePicture picture;
     picture.positions.resize(job.entry.pointCount);
     for (std::size_t at = 0; at < job.shown.size(); at += 2)
@@ -48,7 +49,7 @@ Result<NodeColumns> decodeColumns(const DecodeJob& job, const WorkGate* gate) {
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     auto index = static_cast<std::size_t>(job.block);
     if (job.block < 0 || index >= blocks.size() || job.entry.attributeBytes.size() != blocks.size())
-        return errorAt(job, ErrorCode::invalidArgument, cat("the node has no block ", job.block));
+        return errorAt(job, ErrorCode::invalidArgument, say("the node has no block ", job.block));
     if (blocks[index].isExactColour)
         return decodeExact(job);
     STIPPLE_TRY(columns, decodeAttributes(metadata, job.entry, index, job.attributes, gate));
@@ -58,7 +59,7 @@ Result<NodeColumns> decodeColumns(const DecodeJob& job, const WorkGate* gate) {
         int attribute = blocks[index].attributes[c];
         std::size_t size = metadata.schema.attributes[static_cast<std::size_t>(attribute)].size();
         if (c >= columns.size() || columns[c].size() != size * job.entry.pointCount)
-            return errorAt(job, ErrorCode::corrupt, "a block of attributes is too short");
+            return errorAt(job, ErrorCode::corrupt, say("a block of attributes is too short"));
         made.columns.push_back({attribute, static_cast<std::uint32_t>(size)});
         made.values.insert(made.values.end(), columns[c].begin(), columns[c].end());
     }
@@ -69,7 +70,7 @@ Result<ResidentNode> decodePicturePart(const DecodeJob& job, const WorkGate* gat
     const CloudMetadata& metadata = *job.metadata;
     int nodeBits = metadata.rootCube.nodeBits(job.entry.key.level);
     if (nodeBits < 0 || nodeBits > maxNodeBits)
-        return errorAt(job, ErrorCode::corrupt, cat("a node 2^", nodeBits, " steps wide can hold no points"));
+        return errorAt(job, ErrorCode::corrupt, say("a node 2^", nodeBits, " steps wide can hold no points"));
     STIPPLE_TRY(picture, decodePicture(metadata, job.entry, job.strata, job.picture, gate));
     ResidentNode node = packNode(job.entry.key, nodeBits, job.entry.pointCount, picture,
                                  metadata.pictureColour, metadata.colourIs8Bit);
@@ -91,7 +92,7 @@ Result<NodeColumns> decodePoints(const DecodeJob& job, const WorkGate* gate) {
     STIPPLE_TRY(batch, decodeWhole(job, gate));
     for (std::uint32_t point : job.points)
         if (point >= batch.size())
-            return errorAt(job, ErrorCode::invalidArgument, cat("the node has no point ", point));
+            return errorAt(job, ErrorCode::invalidArgument, say("the node has no point ", point));
     NodeColumns made;
     made.pointCount = static_cast<std::uint32_t>(job.points.size());
     ByteWriter values;
@@ -131,7 +132,7 @@ class InlineDecoder final : public NodeDecoder {
 
 Result<ResidentNode> decodeNode(const DecodeJob& job, const WorkGate* gate) {
     if (!job.metadata || job.strata < 0 || job.strata > strataCount)
-        return errorAt(job, ErrorCode::invalidArgument, "a decoding job without metadata or strata");
+        return errorAt(job, ErrorCode::invalidArgument, say("a decoding job without metadata or strata"));
     if (job.strata > 0 && job.points.empty())
         return decodePicturePart(job, gate);
     STIPPLE_TRY(columns, job.points.empty() ? decodeColumns(job, gate) : decodePoints(job, gate));

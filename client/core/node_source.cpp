@@ -72,7 +72,7 @@ class StippleNodeSource final : public NodeSource {
     static Status checkInside(ByteRange range, std::uint64_t fileBytes) {
         if (range.offset > fileBytes || range.size > fileBytes - range.offset)
             return Error{ErrorCode::corrupt,
-                         cat("the header names bytes ", range.offset, " to ", range.end(), " of a file of ",
+                         say("the header names bytes ", range.offset, " to ", range.end(), " of a file of ",
                              fileBytes),
                          "header", ""};
         return {};

@@ -73,18 +73,18 @@ bool holdsAll(const CloudMetadata& metadata, const NodeColumns& columns, std::si
 } // namespace
 
 Status PointQueries::ask(const CloudLoader& cloud, const PointIdentity& point) {
-    auto refused = [&](std::string what) {
+    auto refused = [&](Phrase what) {
         return Error{ErrorCode::invalidArgument, std::move(what), cat("node ", point.node.text()),
-                     "ask for points of the present picture"};
+                     say("ask for points of the present picture")};
     };
     if (!cloud.ready())
-        return refused("the cloud is not open");
+        return refused(say("the cloud is not open"));
     std::int32_t node = cloud.hierarchy.find(point.node);
     if (node < 0)
-        return refused("the node is not known");
+        return refused(say("the node is not known"));
     std::uint32_t count = cloud.hierarchy.node(static_cast<std::size_t>(node)).entry.pointCount;
     if (point.index >= count)
-        return refused(cat("point ", point.index, " of ", count));
+        return refused(say("point ", point.index, " of ", count));
     asked_.push_back({point, static_cast<std::uint32_t>(node), 0});
     return {};
 }
@@ -128,8 +128,8 @@ void PointQueries::takeLoaded(const CloudLoader& cloud, std::uint32_t node, Resu
             return;
         --decoding_;
         if (decoded.ok() && !holdsAll(*metadata, decoded->columns, points))
-            decoded =
-                Error{ErrorCode::corrupt, "a decoder left out attributes of a point", "", "reload the page"};
+            decoded = Error{ErrorCode::corrupt, say("a decoder left out attributes of a point"), "",
+                            say("reload the page")};
         answer(batch, [&](std::size_t n) -> Result<PointRecord> {
             return decoded.ok() ? Result<PointRecord>(recordOf(*metadata, decoded->columns, n))
                                 : decoded.error().at(source);
@@ -152,7 +152,7 @@ void PointQueries::cancel(CloudId cloud) {
     std::erase_if(asked_, [&](const Question& question) {
         if (question.point.cloud != cloud)
             return false;
-        answers_.push_back({question.point, Error{ErrorCode::cancelled, "the cloud was closed",
+        answers_.push_back({question.point, Error{ErrorCode::cancelled, say("the cloud was closed"),
                                                   cat("node ", question.point.node.text()), ""}});
         return true;
     });

@@ -15,7 +15,7 @@ using nlohmann::json;
 constexpr double limit = 1e100, infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t maxCorners = 100'000;
 
-Error wrong(const std::string& path, const std::string& what) {
+Error wrong(const std::string& path, Phrase what) {
     return {ErrorCode::invalidArgument, what, path, ""};
 }
 
@@ -27,7 +27,7 @@ Result<std::array<double, N>> numbersFrom(const json& value, const std::string& 
         fits = value[i].is_number() && std::abs(value[i].get<double>()) <= limit;
         numbers[i] = fits ? value[i].get<double>() : 0;
     }
-    return fits ? Result<std::array<double, N>>(numbers) : wrong(path, cat("must be ", N, " numbers"));
+    return fits ? Result<std::array<double, N>>(numbers) : wrong(path, say("must be ", N, " numbers"));
 }
 
 using Places = std::vector<Point2d>;
@@ -45,7 +45,7 @@ Places readPlaces(FieldReader& fields, const char* name) {
         return addPlace(item, at, places);
     });
     if (given && places.empty())
-        fields.fail(name, "must not be empty");
+        fields.fail(name, say("must not be empty"));
     return places;
 }
 
@@ -56,14 +56,14 @@ void readRings(FieldReader& fields, RegionShape& shape) {
         shape.rings.push_back(std::move(outer));
     bool given = fields.list("holes", maxCorners, [&](const json& hole, const std::string& path) -> Status {
         if (!hole.is_array() || hole.size() > maxCorners)
-            return wrong(path, "must be a list of corners");
+            return wrong(path, say("must be a list of corners"));
         Places& ring = shape.rings.emplace_back();
         for (std::size_t i = 0; i < hole.size(); ++i)
             STIPPLE_CHECK(addPlace(hole[i], cat(path, "[", i, "]"), ring));
         return {};
     });
     if (given && !hasOuter)
-        fields.fail("holes", "can't be given without a polygon");
+        fields.fail("holes", say("can't be given without a polygon"));
 }
 
 // [low, high]; null: open.
@@ -81,7 +81,7 @@ void readHeights(FieldReader& fields, const json& region, RegionShape& shape) {
             ends[i] = end.get<double>();
     }
     if (!fits || ends[0] > ends[1])
-        return fields.fail("heights", "must be [low, high] with low <= high, null where open");
+        return fields.fail("heights", say("must be [low, high] with low <= high, null where open"));
     shape.heights = ValueRange{ends[0], ends[1]};
 }
 
@@ -98,7 +98,7 @@ Result<RegionShape::Box> boxFromJson(const json& value, const std::string& path)
     });
     STIPPLE_CHECK(fields.finish());
     if (given && count != 3)
-        return wrong(path, "'axes' must be three vectors");
+        return wrong(path, say("'axes' must be three vectors"));
     return box;
 }
 

@@ -10,7 +10,7 @@ namespace stipple {
 Result<std::unique_ptr<RegionScan>> RegionScan::make(RegionScanId id, const CloudLoader& cloud,
                                                      const RegionRequest& request) {
     if (!cloud.ready())
-        return Error{ErrorCode::invalidArgument, "the cloud is not open", cloud.state.name, ""};
+        return Error{ErrorCode::invalidArgument, say("the cloud is not open"), cloud.state.name, ""};
     std::unique_ptr<RegionScan> scan(new RegionScan(id, request, cloud.opened.metadata));
     STIPPLE_TRY(filter, CloudFilter::make(*scan->metadata_, request.filter));
     scan->filter_ = std::make_unique<CloudFilter>(std::move(filter));
@@ -70,8 +70,8 @@ bool RegionScan::visitChunks(const CloudLoader& cloud) {
     std::erase_if(chunks_, [&](std::uint32_t index) {
         const HierarchyNode& node = cloud.hierarchy.node(index);
         if (node.childrenState == ChildrenState::failed)
-            fail({ErrorCode::corrupt, cat("what lies below node ", node.entry.key.text(), " can't be had"),
-                  cloud.state.name, "see the messages before this one"});
+            fail({ErrorCode::corrupt, say("what lies below node ", node.entry.key.text(), " can't be had"),
+                  cloud.state.name, say("see the messages before this one")});
         if (node.childrenState != ChildrenState::known)
             return false;
         for (std::int32_t child : node.children)
@@ -105,7 +105,7 @@ bool RegionScan::ask(const CloudLoader& cloud) {
         const NodeEntry& entry = cloud.hierarchy.node(index).entry;
         std::vector<std::size_t> blocks = blocksHolding(*metadata_, chooser_->attributesToRead(tested));
         if (!blocks.empty() && blocks.back() >= entry.attributeBytes.size()) {
-            fail({ErrorCode::corrupt, cat("node ", entry.key.text(), " has no such blocks"), cloud.state.name,
+            fail({ErrorCode::corrupt, say("node ", entry.key.text(), " has no such blocks"), cloud.state.name,
                   ""});
             return true;
         }

@@ -334,7 +334,7 @@ void SessionLoading::release(CloudId id) {
     cache_.eraseCloud(id);
     kept_.eraseCloud(id);
     pointQueries_.cancel(id);
-    regionScans_.fail(id, {ErrorCode::cancelled, "the cloud was closed, or its file replaced", "", ""});
+    regionScans_.fail(id, {ErrorCode::cancelled, say("the cloud was closed, or its file replaced"), "", ""});
     std::erase_if(local_, [&](const Loaded& loaded) { return loaded.item.key.cloud == id; });
 }
 

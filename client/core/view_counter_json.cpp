@@ -22,7 +22,7 @@ Status readRequest(const json& item, const std::string& path, std::vector<Histog
     bool hasValues =
         request.mode == ColourMode::elevation || !attributeOf(request.mode, request.attribute).empty();
     if (!hasValues)
-        fields.fail("colourMode", "must be elevation or one that shows an attribute");
+        fields.fail("colourMode", say("must be elevation or one that shows an attribute"));
     requests.push_back(std::move(request));
     return fields.finish();
 }

@@ -157,7 +157,7 @@ class Session final : public ViewSession {
     Status askPoint(const PointIdentity& point) override {
         auto cloud = loading_.clouds().find(point.cloud);
         if (cloud == loading_.clouds().end())
-            return Error{ErrorCode::invalidArgument, cat("there is no cloud ", point.cloud), "", ""};
+            return Error{ErrorCode::invalidArgument, say("there is no cloud ", point.cloud), "", ""};
         STIPPLE_CHECK(loading_.pointQueries().ask(cloud->second, point));
         dirty_ = true; // what is to be loaded has changed
         return {};
@@ -168,7 +168,7 @@ class Session final : public ViewSession {
     Result<RegionScanId> scanRegion(const RegionRequest& request) override {
         auto cloud = loading_.clouds().find(request.cloud);
         if (cloud == loading_.clouds().end())
-            return Error{ErrorCode::invalidArgument, cat("there is no cloud ", request.cloud), "", ""};
+            return Error{ErrorCode::invalidArgument, say("there is no cloud ", request.cloud), "", ""};
         return loading_.regionScans().start(cloud->second, request);
     }
     std::vector<RegionNode> takeRegionNodes(RegionScanId id, std::size_t most) override {
@@ -179,7 +179,7 @@ class Session final : public ViewSession {
         if (const RegionScan* scan = loading_.regionScans().find(id))
             return scan->progress();
         RegionProgress none;
-        none.error = Error{ErrorCode::cancelled, cat("there is no scan ", id), "", ""};
+        none.error = Error{ErrorCode::cancelled, say("there is no scan ", id), "", ""};
         return none;
     }
     void endRegionScan(RegionScanId id) override {

@@ -42,7 +42,7 @@ class GlesDrawer final : public FrameDrawer {
         return renderer_->distances(plan);
     }
     std::string name() const override { return context_->driver(); }
-    std::string_view limitation() const override { return renderer_->limitation(); }
+    std::string limitation() const override { return renderer_->limitation(); }
 
   private:
     std::unique_ptr<EglContext> context_;

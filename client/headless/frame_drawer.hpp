@@ -27,7 +27,7 @@ class FrameDrawer {
     virtual Result<std::vector<float>> distances(const FramePlan& plan) = 0;
     virtual std::string name() const = 0; // "software", or the GL driver
     // GlesRenderer::limitation of the plan that was drawn last.
-    virtual std::string_view limitation() const { return {}; }
+    virtual std::string limitation() const { return {}; }
 };
 
 } // namespace stipple::headless

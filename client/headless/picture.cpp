@@ -78,7 +78,7 @@ class Session final : public PictureSession {
         picture.drawSeconds = secondsSince(start);
         picture.camera = camera;
         picture.frame = plan.counters;
-        for (std::string sentence : {lack(request.style), std::string(drawer->limitation())})
+        for (std::string sentence : {lack(request.style), drawer->limitation()})
             if (!sentence.empty())
                 picture.limitations.push_back(std::move(sentence));
         picture.session = session_->counters();

@@ -63,7 +63,7 @@ Result<std::vector<int>> attributesFrom(const Schema& schema, const json& reques
     auto names = request.find("attributes");
     if (names == request.end() || names->is_null())
         return attributes;
-    Error wrong{ErrorCode::invalidArgument, "'attributes' must be a list of names", "region", ""};
+    Error wrong{ErrorCode::invalidArgument, say("'attributes' must be a list of names"), "region", ""};
     if (!names->is_array())
         return wrong;
     attributes.clear();
@@ -82,7 +82,7 @@ Result<std::unique_ptr<PointTaker>> fileTaker(const Metadata& metadata, const Cl
                                               const json& request, std::shared_ptr<Pieces> pieces) {
     std::string format = textField(request, "format");
     if (format != "las" && format != "laz" && format != "csv")
-        return Error{ErrorCode::invalidArgument, "'format' must be las, laz or csv", "region", ""};
+        return Error{ErrorCode::invalidArgument, say("'format' must be las, laz or csv"), "region", ""};
     STIPPLE_TRY(attributes, attributesFrom(metadata->schema, request));
     Metadata written = metadata;
     if (filter.hasCorridor()) {

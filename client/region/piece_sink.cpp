@@ -9,7 +9,7 @@ namespace stipple {
 Status PieceSink::overwrite(std::uint64_t offset, ByteSpan bytes) {
     std::uint64_t size = to_->offset + to_->fresh.size();
     if (bytes.size() > size || offset > size - bytes.size())
-        return Error{ErrorCode::invalidArgument, cat("bytes from ", offset, " on are not there to overwrite"),
+        return Error{ErrorCode::invalidArgument, say("bytes from ", offset, " on are not there to overwrite"),
                      "", ""};
     if (offset < to_->offset) {
         std::uint64_t taken = std::min<std::uint64_t>(bytes.size(), to_->offset - offset);

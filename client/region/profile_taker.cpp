@@ -110,7 +110,7 @@ class ProfileTaker final : public PointTaker {
 Result<std::unique_ptr<PointTaker>> profileTaker(const Metadata& metadata, const CloudFilter& filter,
                                                  std::shared_ptr<Pieces> pieces) {
     if (!filter.hasCorridor())
-        return Error{ErrorCode::invalidArgument, "a profile needs a line and a width", "region", ""};
+        return Error{ErrorCode::invalidArgument, say("a profile needs a line and a width"), "region", ""};
     return std::unique_ptr<PointTaker>(std::make_unique<ProfileTaker>(metadata, std::move(pieces)));
 }
 

@@ -34,8 +34,8 @@ Result<std::unique_ptr<RegionWork>> RegionWork::make(std::shared_ptr<const Cloud
     work->metadata_ = std::move(metadata);
     std::string make = textField(request, "make");
     if (make != "file" && make != "profile" && make != "volume" && make != "count")
-        return Error{ErrorCode::invalidArgument, "'make' must be file, profile, volume or count", "region",
-                     ""};
+        return Error{ErrorCode::invalidArgument, say("'make' must be file, profile, volume or count"),
+                     "region", ""};
     json region = request.contains("region") ? request["region"] : json::object();
     if (make == "volume") {
         STIPPLE_TRY(column, volumeRegion(request));
@@ -50,7 +50,8 @@ Result<std::unique_ptr<RegionWork>> RegionWork::make(std::shared_ptr<const Cloud
     work->chooser_ = std::make_unique<PointChooser>(std::move(chooser));
     if (auto most = request.find("mostPoints"); most != request.end()) {
         if (!most->is_number_unsigned())
-            return Error{ErrorCode::invalidArgument, "'mostPoints' must be a whole number", "region", ""};
+            return Error{ErrorCode::invalidArgument, say("'mostPoints' must be a whole number"), "region",
+                         ""};
         work->mostPoints_ = most->get<std::uint64_t>();
     }
     work->scan_ = {{"region", std::move(region)}, {"attributes", work->taker_->attributes()}};
@@ -63,8 +64,8 @@ Status RegionWork::take(NodeBytes node, bool tested) {
     STIPPLE_TRY(batch, chooser_->choose(node, tested, dropped));
     points_ += batch.size();
     if (mostPoints_ > 0 && points_ > mostPoints_)
-        return Error{ErrorCode::limitExceeded, cat("the region holds more than ", mostPoints_, " points"), "",
-                     "choose a smaller one, or use stipple export"};
+        return Error{ErrorCode::limitExceeded, say("the region holds more than ", mostPoints_, " points"), "",
+                     say("choose a smaller one, or use stipple export")};
     return taker_->take(std::move(batch));
 }
 

@@ -20,7 +20,7 @@ using namespace survey;
 // Points wait until it is known how many there are, where the size of the cells depends on that.
 constexpr std::size_t maxPointsWaiting = 20'000'000;
 
-Error wrong(std::string what, std::string advice = "") {
+Error wrong(Phrase what, Phrase advice = "") {
     return {ErrorCode::invalidArgument, std::move(what), "volume", std::move(advice)};
 }
 
@@ -35,23 +35,24 @@ struct Setting {
 
 Result<Setting> settingFrom(const json& request) {
     if (!request.is_object())
-        return wrong("an object {…} is expected");
+        return wrong(say("an object {…} is expected"));
     STIPPLE_TRY(picked, pickedPointsFrom(request));
     if (picked.points.size() < 3)
-        return wrong("a volume needs three corners at least");
+        return wrong(say("a volume needs three corners at least"));
     std::vector<Vec3d> local = localPoints(picked.points);
     Vec3d origin = picked.points.front().grid.toWorld(picked.points.front().steps);
     bool geocentric = request.contains("geocentric") && request["geocentric"] == true;
     Directions directions = geocentric ? geocentricDirections(origin) : Directions{};
     auto level = [&](Vec3d at) { return Base::plane({at, directions.up}, directions); };
     std::vector<double> deviations = picked.deviations;
-    Result<Base> base = wrong("'base' must be \"rim\", {\"height\": z} or {\"point\": {…}}");
+    Result<Base> base = wrong(say("'base' must be \"rim\", {\"height\": z} or {\"point\": {…}}"));
     const json stated = request.contains("base") ? request["base"] : json("rim");
     if (stated == "rim") {
         base = Base::rim(local, directions);
     } else if (stated.is_object() && stated.contains("height") && stated["height"].is_number()) {
         if (geocentric)
-            return wrong("heights of Earth-centred coordinates can't be typed", "pick a point of the base");
+            return wrong(say("heights of Earth-centred coordinates can't be typed"),
+                         say("pick a point of the base"));
         base = level({0, 0, stated["height"].get<double>() - origin.z});
         deviations = {0};
     } else if (stated.is_object() && stated.contains("point")) {
@@ -64,7 +65,7 @@ Result<Setting> settingFrom(const json& request) {
     std::optional<double> cell;
     if (request.contains("cell") && !request["cell"].is_null()) {
         if (!request["cell"].is_number() || !(request["cell"].get<double>() > 0))
-            return wrong("'cell' must be a number above 0");
+            return wrong(say("'cell' must be a number above 0"));
         cell = request["cell"].get<double>();
     }
     return Setting{std::move(picked.points), std::move(local), std::move(deviations), directions, cell,
@@ -94,8 +95,8 @@ class VolumeTaker final : public PointTaker {
         }
         if (waiting_.size() > maxPointsWaiting)
             return Error{ErrorCode::limitExceeded,
-                         cat("the polygon holds more than ", maxPointsWaiting, " points"), "volume",
-                         "say how large the cells are, or draw a smaller one"};
+                         say("the polygon holds more than ", maxPointsWaiting, " points"), "volume",
+                         say("say how large the cells are, or draw a smaller one")};
         return {};
     }
 

@@ -20,8 +20,9 @@ std::string logOf(GLuint id, void (*length)(GLuint, GLenum, GLint*),
 }
 
 Error shaderError(const char* what, const std::string& log) {
-    return {ErrorCode::unsupported, cat(what, ": ", log.empty() ? "the driver gives no reason" : log),
-            "OpenGL ES 3.0", "update the graphics driver"};
+    return {ErrorCode::unsupported,
+            log.empty() ? say(what, ": the driver gives no reason") : say(what, ": ", log), "OpenGL ES 3.0",
+            say("update the graphics driver")};
 }
 
 // Has it compiled, and attaches it; the program keeps the shader alive from there.
@@ -89,11 +90,11 @@ Status checkGl(const char* doing) {
     for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
     }
     if (first == GL_OUT_OF_MEMORY)
-        return Error{ErrorCode::limitExceeded, cat("graphics memory ran out while ", doing), "OpenGL ES 3.0",
-                     "lower the point budget"};
+        return Error{ErrorCode::limitExceeded, say("graphics memory ran out while ", doing), "OpenGL ES 3.0",
+                     say("lower the point budget")};
     char code[16];
     std::snprintf(code, sizeof code, "0x%04X", first);
-    return Error{ErrorCode::ioFailed, cat("OpenGL error ", code, " while ", doing), "OpenGL ES 3.0", ""};
+    return Error{ErrorCode::ioFailed, say("OpenGL error ", code, " while ", doing), "OpenGL ES 3.0", ""};
 }
 
 } // namespace stipple::gles

@@ -60,7 +60,7 @@ Status Picker::prepare() {
     bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
     Status made = checkGl("making the buffers for picking");
     if (made.ok() && !complete)
-        made = Error{ErrorCode::unsupported, "the driver refuses a framebuffer of four 32-bit integers",
+        made = Error{ErrorCode::unsupported, say("the driver refuses a framebuffer of four 32-bit integers"),
                      "OpenGL ES 3.0", ""};
     if (!made.ok())
         framebuffer_ = Framebuffer();
@@ -83,7 +83,8 @@ Status Picker::prepareCentres() {
     Status made = checkGl("making the buffers for picking");
     if (made.ok() && !complete)
         made = Error{ErrorCode::unsupported,
-                     "the driver refuses a framebuffer of four and two 32-bit integers", "OpenGL ES 3.0", ""};
+                     say("the driver refuses a framebuffer of four and two 32-bit integers"), "OpenGL ES 3.0",
+                     ""};
     if (!made.ok())
         centresFramebuffer_ = Framebuffer();
     return made;
@@ -131,7 +132,7 @@ Result<std::optional<PickAnswer>> Picker::take() {
         return std::optional<PickAnswer>();
     fence_.reset();
     if (state == GL_WAIT_FAILED)
-        return Error{ErrorCode::ioFailed, "the driver lost what it was asked about the pointer",
+        return Error{ErrorCode::ioFailed, say("the driver lost what it was asked about the pointer"),
                      "OpenGL ES 3.0", ""};
     std::vector<PickSample> samples = readSamples();
     STIPPLE_CHECK(checkGl("reading what is near the pointer"));

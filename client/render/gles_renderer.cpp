@@ -20,9 +20,11 @@ namespace {
 
 using namespace gles;
 
-constexpr std::string_view withoutFloats =
-    "this graphics driver can't blend into floating-point colours (EXT_color_buffer_float): points are drawn "
-    "without high-quality splats";
+Phrase withoutFloats() {
+    return say("this graphics driver can't blend into floating-point colours (EXT_color_buffer_float): "
+               "points are drawn "
+               "without high-quality splats");
+}
 
 // Diameter of the largest point that the driver draws, pixels (OpenGL ES 3.0 §2.8: at least 1).
 int largestPoint() {
@@ -142,7 +144,7 @@ class Gles3Renderer final : public GlesRenderer {
         return nodes_.bytes() + points_.bytes() + centres_.bytes() + sums_.bytes() + octree_.bytes();
     }
 
-    std::string_view limitation() const override { return limitation_; }
+    const Phrase& limitation() const override { return limitation_; }
 
   private:
     // The background alone.
@@ -157,20 +159,21 @@ class Gles3Renderer final : public GlesRenderer {
         PictureWindow drawn = drawnWindow(plan);
         if (!isDrawable(plan, partSide_))
             return Error{ErrorCode::invalidArgument,
-                         cat("a picture of ", drawn.width, " × ", drawn.height, " pixels can't be drawn"), "",
-                         cat("each side must be in 1..", partSide_, " with this graphics driver")};
+                         say("a picture of ", drawn.width, " × ", drawn.height, " pixels can't be drawn"), "",
+                         say("each side must be in 1..", partSide_, " with this graphics driver")};
         return {};
     }
 
-    std::string limitationOf(const RasterFrame& frame, bool blends) const {
-        std::string told(frame.splats && !blends ? withoutFloats : "");
+    Phrase limitationOf(const RasterFrame& frame, bool blends) const {
+        Phrase told = frame.splats && !blends ? withoutFloats() : Phrase();
         int largest = ((sizesDiffer(frame) ? frame.maxSize64 : frame.size64) + sizeSteps - 1) / sizeSteps;
         if (frame.disc && frame.perspective) // what leans towards the eye is seen larger
             largest = maxPointPixels;
-        if (largest > pointPixels_)
-            told += cat(told.empty() ? "" : "; ", "this graphics driver draws points of at most ",
-                        pointPixels_, " pixels: larger ones are cut down to that");
-        return told;
+        if (largest <= pointPixels_)
+            return told;
+        Phrase cut = say("this graphics driver draws points of at most ", pointPixels_,
+                         " pixels: larger ones are cut down to that");
+        return told.empty() ? cut : say(told, "; ", cut);
     }
 
     // The default framebuffer never changes its kind, so it is asked once.
@@ -383,7 +386,7 @@ class Gles3Renderer final : public GlesRenderer {
     SumTarget sums_;       // splats
     FloatBlending floatBlending_ = FloatBlending::none;
     int pointPixels_ = maxPointPixels, partSide_ = maxPartSide;
-    std::string limitation_;
+    Phrase limitation_;
     NodeBuffers nodes_;
     DepthReader depthReader_;
     Picker picker_;

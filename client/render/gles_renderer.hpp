@@ -44,7 +44,7 @@ class GlesRenderer {
     virtual std::uint64_t gpuBytes() const = 0;
     // What the last plan asked for that this context can't do, and what was drawn instead: a sentence. Empty:
     // nothing.
-    virtual std::string_view limitation() const = 0;
+    virtual const Phrase& limitation() const = 0;
 };
 
 } // namespace stipple

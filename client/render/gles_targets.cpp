@@ -29,8 +29,8 @@ Status PointTarget::resize(int newWidth, int newHeight) {
     STIPPLE_CHECK(checkGl("making the frame's buffers"));
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         *this = PointTarget();
-        return Error{ErrorCode::unsupported, "the driver refuses a framebuffer of RGBA8 and 32-bit depth",
-                     "OpenGL ES 3.0", ""};
+        return Error{ErrorCode::unsupported,
+                     say("the driver refuses a framebuffer of RGBA8 and 32-bit depth"), "OpenGL ES 3.0", ""};
     }
     return {};
 }
@@ -54,7 +54,7 @@ Status CentreTarget::resize(int newWidth, int newHeight, bool withNormals) {
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         *this = CentreTarget();
         return Error{ErrorCode::unsupported,
-                     "the driver refuses a framebuffer of RGBA8, 32-bit integers and 32-bit depth",
+                     say("the driver refuses a framebuffer of RGBA8, 32-bit integers and 32-bit depth"),
                      "OpenGL ES 3.0", ""};
     }
     return {};
@@ -94,8 +94,8 @@ Status SumTarget::resize(int newWidth, int newHeight, FloatBlending wanted) {
     STIPPLE_CHECK(checkGl("making the buffer of splats"));
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
         *this = SumTarget();
-        return Error{ErrorCode::unsupported, "the driver refuses a framebuffer of floating-point colours",
-                     "OpenGL ES 3.0", ""};
+        return Error{ErrorCode::unsupported,
+                     say("the driver refuses a framebuffer of floating-point colours"), "OpenGL ES 3.0", ""};
     }
     return {};
 }

@@ -35,18 +35,18 @@ struct Request {
     Directions directions;
 };
 
-Error wrong(std::string what) {
+Error wrong(Phrase what) {
     return Error{ErrorCode::invalidArgument, std::move(what), "measurement", ""};
 }
 
 Result<Request> requestFrom(const json& object) {
     Request request;
     if (!object.is_object() || !object.contains("kind") || !object["kind"].is_string())
-        return wrong("kind must be a name: point, distance, height, azimuth, angle, area or circle");
+        return wrong(say("kind must be a name: point, distance, height, azimuth, angle, area or circle"));
     request.kind = object["kind"].get<std::string>();
     for (const char* flag : {"closed", "geocentric"})
         if (object.contains(flag) && !object[flag].is_boolean())
-            return wrong(cat(flag, " must be true or false"));
+            return wrong(say(flag, " must be true or false"));
     request.closed = object.value("closed", false);
     STIPPLE_TRY(picked, pickedPointsFrom(object));
     const std::vector<GridPoint>& points = picked.points;
@@ -135,7 +135,7 @@ json azimuthAnswer(const Request& request) {
 Result<json> angleAnswer(const Request& request) {
     auto angle = [](std::span<const Vec3d> points) { return angleAt(points[1], points[0], points[2]); };
     if (!angle(request.points))
-        return wrong("an angle needs three different places, the corner second");
+        return wrong(say("an angle needs three different places, the corner second"));
     json answer;
     putTurn(answer, request, "angle", angle);
     return answer;
@@ -182,6 +182,14 @@ constexpr std::array<Kind, 7> kinds{{{"point", 1, 1},
                                      {"area", 3, maxPoints},
                                      {"circle", 3, 3}}};
 
+Phrase pointsNeeded(const Kind& kind, std::size_t count) {
+    if (kind.most > kind.least)
+        return say(kind.name, " needs ", kind.least, " or more points, not ", count);
+    if (kind.least > 1)
+        return say(kind.name, " needs ", kind.least, " points, not ", count);
+    return say(kind.name, " needs 1 point, not ", count);
+}
+
 Result<json> answerTo(const Request& request) {
     const std::string& kind = request.kind;
     if (kind == "point")
@@ -204,12 +212,11 @@ Result<json> measureJson(const json& object) {
     auto kind = std::find_if(kinds.begin(), kinds.end(),
                              [&](const Kind& known) { return request.kind == known.name; });
     if (kind == kinds.end())
-        return wrong(cat("there is no kind ", request.kind,
+        return wrong(say("there is no kind ", request.kind,
                          "; kinds are point, distance, height, azimuth, angle, area, circle"));
     std::size_t count = request.points.size();
     if (count < kind->least || count > kind->most)
-        return wrong(cat(request.kind, " needs ", kind->least, kind->most > kind->least ? " or more" : "",
-                         kind->least == 1 ? " point" : " points", ", not ", count));
+        return wrong(pointsNeeded(*kind, count));
     STIPPLE_TRY(answer, answerTo(request));
     answer["kind"] = request.kind;
     return answer;

@@ -16,7 +16,7 @@ using nlohmann::json;
 
 constexpr double maxSteps = 9007199254740992.0; // 2^53
 
-Error wrong(std::string what) {
+Error wrong(Phrase what) {
     return Error{ErrorCode::invalidArgument, std::move(what), "measurement", ""};
 }
 
@@ -26,7 +26,7 @@ Result<Vec3d> vectorFrom(const json& object, const char* name, std::size_t point
         !std::all_of(at->begin(), at->end(), [](const json& number) {
             return number.is_number() && std::isfinite(number.get<double>());
         }))
-        return wrong(cat("points[", point, "].", name, " must be three numbers [x, y, z]"));
+        return wrong(say("points[", point, "].", name, " must be three numbers [x, y, z]"));
     return Vec3d{(*at)[0].get<double>(), (*at)[1].get<double>(), (*at)[2].get<double>()};
 }
 
@@ -37,9 +37,9 @@ Result<GridPoint> gridPointFrom(const json& object, std::size_t index) {
     GridPoint point{{}, {scale, offset}};
     for (int axis = 0; axis < 3; ++axis) {
         if (steps[axis] != std::floor(steps[axis]) || std::abs(steps[axis]) > maxSteps)
-            return wrong(cat("points[", index, "].integers must be whole numbers of at most 2^53"));
+            return wrong(say("points[", index, "].integers must be whole numbers of at most 2^53"));
         if (!(scale[axis] > 0))
-            return wrong(cat("points[", index, "].scale must be above 0"));
+            return wrong(say("points[", index, "].scale must be above 0"));
         point.steps[axis] = static_cast<std::int64_t>(steps[axis]);
     }
     return point;
@@ -50,16 +50,16 @@ Result<GridPoint> gridPointFrom(const json& object, std::size_t index) {
 Result<PickedPoints> pickedPointsFrom(const json& request) {
     auto list = request.find("points");
     if (list == request.end() || !list->is_array() || list->empty() || list->size() > maxPickedPoints)
-        return wrong(cat("points must be a list of 1 to ", maxPickedPoints, " points"));
+        return wrong(say("points must be a list of 1 to ", maxPickedPoints, " points"));
     PickedPoints picked;
     for (const json& item : *list) {
         std::size_t index = picked.points.size();
         if (!item.is_object())
-            return wrong(cat("points[", index, "] must be an object"));
+            return wrong(say("points[", index, "] must be an object"));
         STIPPLE_TRY(point, gridPointFrom(item, index));
         auto spacing = item.find("spacing");
         if (spacing != item.end() && !(spacing->is_number() && spacing->get<double>() >= 0))
-            return wrong(cat("points[", index, "].spacing must be a number from 0 on"));
+            return wrong(say("points[", index, "].spacing must be a number from 0 on"));
         picked.deviations.push_back(spacing == item.end() ? 0 : deviationOfSpacing(spacing->get<double>()));
         picked.points.push_back(point);
     }

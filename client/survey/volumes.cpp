@@ -21,8 +21,8 @@ double squareTo(Point2d p, Point2d a, Point2d b) {
 Result<Base> Base::plane(const Plane& plane, const Directions& directions) {
     double rise = directions.height(plane.normal);
     if (!(std::abs(rise) > 1e-9))
-        return Error{ErrorCode::invalidArgument, "an upright plane has no side above it", "",
-                     "choose a base that is not upright"};
+        return Error{ErrorCode::invalidArgument, say("an upright plane has no side above it"), "",
+                     say("choose a base that is not upright")};
     Point2d normal = directions.plan(plane.normal), at = directions.plan(plane.at);
     Facet facet;
     facet.slopeX = -normal.x / rise;
@@ -96,7 +96,7 @@ CutFillMeasure::CutFillMeasure(std::vector<Point2d> plan, Base base, const Direc
 Result<CutFillMeasure> CutFillMeasure::make(std::span<const Vec3d> corners, Base base, double cell,
                                             const Directions& directions) {
     if (!(cell > 0 && std::isfinite(cell)))
-        return Error{ErrorCode::invalidArgument, "cells of a volume need a side above 0", "", ""};
+        return Error{ErrorCode::invalidArgument, say("cells of a volume need a side above 0"), "", ""};
     std::vector<Point2d> plan;
     for (Vec3d corner : corners)
         plan.push_back(directions.plan(corner));
@@ -106,8 +106,8 @@ Result<CutFillMeasure> CutFillMeasure::make(std::span<const Vec3d> corners, Base
     double columns = std::ceil((bounds.max.x - bounds.min.x) / cell);
     double rows = std::ceil((bounds.max.y - bounds.min.y) / cell);
     if (!(columns * rows <= static_cast<double>(maxCells)))
-        return Error{ErrorCode::limitExceeded, "the polygon has too many cells of that size", "",
-                     "choose larger cells or a smaller polygon"};
+        return Error{ErrorCode::limitExceeded, say("the polygon has too many cells of that size"), "",
+                     say("choose larger cells or a smaller polygon")};
     measure.lowest_ = {bounds.min.x, bounds.min.y};
     measure.cell_ = cell;
     measure.columns_ = static_cast<std::size_t>(std::max(columns, 1.0));
@@ -188,8 +188,8 @@ std::vector<double> CutFillMeasure::filledHeights() const {
 
 Result<CutFill> CutFillMeasure::result() const {
     if (points_ == 0)
-        return Error{ErrorCode::notFound, "the polygon holds no point", "",
-                     "draw it where the cloud has points"};
+        return Error{ErrorCode::notFound, say("the polygon holds no point"), "",
+                     say("draw it where the cloud has points")};
     std::vector<double> heights = filledHeights();
     CutFill total;
     total.points = points_;

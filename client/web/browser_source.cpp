@@ -54,7 +54,7 @@ class BrowserSource : public ByteSource {
         if (!reads_.contains(request))
             return;
         stippleHostAbort(request);
-        answer(request, Error{ErrorCode::cancelled, "the read was taken back", name_, ""});
+        answer(request, Error{ErrorCode::cancelled, say("the read was taken back"), name_, ""});
     }
 
     int pump(std::chrono::milliseconds) override {
@@ -142,37 +142,39 @@ class BrowserSource : public ByteSource {
     Error errorOf(ReadFailure failure, const std::string& detail) const {
         switch (failure) {
         case ReadFailure::shortBody:
-            return {ErrorCode::truncated, "the server closed the connection before the end", name_,
-                    "try again; if it goes on, the file or a proxy on the way is damaged"};
+            return {ErrorCode::truncated, say("the server closed the connection before the end"), name_,
+                    say("try again; if it goes on, the file or a proxy on the way is damaged")};
         case ReadFailure::longBody:
-            return {ErrorCode::networkFailed, "the server sent more bytes than it announced", name_, ""};
+            return {ErrorCode::networkFailed, say("the server sent more bytes than it announced"), name_, ""};
         case ReadFailure::fileGone:
-            return {ErrorCode::changed, cat("the file can't be read any more: ", detail), name_,
-                    "drop it on the page again"};
+            return {ErrorCode::changed, say("the file can't be read any more: ", detail), name_,
+                    say("drop it on the page again")};
         case ReadFailure::notAllowed:
             return notAllowedError(detail);
         case ReadFailure::mixedContent:
-            return {ErrorCode::unsupported, "a page that came over https may not read from an http address",
-                    name_, "give the cloud by https, or open the page by http; nothing was asked for"};
+            return {ErrorCode::unsupported,
+                    say("a page that came over https may not read from an http address"), name_,
+                    say("give the cloud by https, or open the page by http; nothing was asked for")};
         case ReadFailure::notPrepared:
-            return {ErrorCode::networkFailed, cat("the page could not prepare the request: ", detail), name_,
-                    "it is this page's prepareRequest that failed"};
+            return {ErrorCode::networkFailed, say("the page could not prepare the request: ", detail), name_,
+                    say("it is this page's prepareRequest that failed")};
         case ReadFailure::network:
             break;
         }
-        return {ErrorCode::networkFailed, cat("the server can't be reached: ", detail), name_,
-                "is the address right, the server running, this machine online?"};
+        return {ErrorCode::networkFailed, say("the server can't be reached: ", detail), name_,
+                say("is the address right, the server running, this machine online?")};
     }
 
     // Browsers hide an answer from a page that its server does not allow to read it. A server that did before
     // has an error now (proxies often leave the field out of their own answers); another never will.
     Error notAllowedError(const std::string& origin) const {
         if (wasReadBefore())
-            return {ErrorCode::networkFailed, "the server's answer was hidden from this page", name_,
-                    "most likely an error of the server, which came without Access-Control-Allow-Origin"};
-        return {ErrorCode::unsupported, "the server is there, but does not allow this page to read the file",
-                name_,
-                cat("it must send Access-Control-Allow-Origin: ", origin,
+            return {
+                ErrorCode::networkFailed, say("the server's answer was hidden from this page"), name_,
+                say("most likely an error of the server, which came without Access-Control-Allow-Origin")};
+        return {ErrorCode::unsupported,
+                say("the server is there, but does not allow this page to read the file"), name_,
+                say("it must send Access-Control-Allow-Origin: ", origin,
                     " (or *) and Access-Control-Expose-Headers: Content-Range, ETag, Retry-After; for tokens "
                     "also Access-Control-Allow-Headers: Authorization, Range")};
     }
@@ -224,8 +226,8 @@ class FileSource final : public BrowserSource {
         if (range.offset >= sizeBytes_) {
             answer(request,
                    Error{ErrorCode::truncated,
-                         cat("the file ends after ", sizeBytes_, " bytes, before byte ", range.offset),
-                         name(), "copy or convert it again"});
+                         say("the file ends after ", sizeBytes_, " bytes, before byte ", range.offset),
+                         name(), say("copy or convert it again")});
             return;
         }
         std::uint64_t size = std::min(range.size, sizeBytes_ - range.offset);
@@ -233,7 +235,7 @@ class FileSource final : public BrowserSource {
         stippleHostReadFile(request, file_, static_cast<double>(range.offset), static_cast<double>(size));
     }
     Result<std::uint64_t> accept(ByteRange, const RangeAnswer&) override {
-        return Error{ErrorCode::invalidArgument, "a local file has no headers", name(), ""};
+        return Error{ErrorCode::invalidArgument, say("a local file has no headers"), name(), ""};
     }
     std::uint32_t file_;
     std::uint64_t sizeBytes_;

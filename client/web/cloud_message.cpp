@@ -66,8 +66,8 @@ Result<CloudMetadata> decodeCloud(ByteSpan message) {
     ByteReader in(message);
     CloudMetadata metadata;
     if (!readCloud(in, metadata))
-        return Error{ErrorCode::corrupt, "a message does not describe a cloud", "decoding worker",
-                     "reload the page"};
+        return Error{ErrorCode::corrupt, say("a message does not describe a cloud"), "decoding worker",
+                     say("reload the page")};
     return metadata;
 }
 

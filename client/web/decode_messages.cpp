@@ -15,8 +15,8 @@ constexpr std::uint64_t maxColumnBytes = 1ull << 31;
 constexpr int wordArrayCount = nodeArrayCount - 1; // and the columns' values
 static_assert(sizeof(NodeColumn) == 8);
 
-Error damaged(const char* what) {
-    return {ErrorCode::corrupt, what, "decoding worker", "reload the page"};
+Error damaged(Phrase what) {
+    return {ErrorCode::corrupt, what, "decoding worker", say("reload the page")};
 }
 
 // With the values' size, to be filled.
@@ -25,7 +25,7 @@ Result<NodeColumns> readColumns(ByteReader& in, std::uint32_t points) {
     std::uint32_t count = in.read<std::uint32_t>();
     std::uint64_t bytesPerPoint = 0;
     if (count > in.remaining() / sizeof(NodeColumn) || points > maxPoints)
-        return damaged("an answer to a decoding job names more columns than it holds");
+        return damaged(say("an answer to a decoding job names more columns than it holds"));
     for (std::uint32_t i = 0; i < count; ++i) {
         NodeColumn column;
         column.attribute = in.read<std::int32_t>();
@@ -34,7 +34,7 @@ Result<NodeColumns> readColumns(ByteReader& in, std::uint32_t points) {
         columns.columns.push_back(column);
     }
     if (bytesPerPoint > 0 && points > maxColumnBytes / bytesPerPoint)
-        return damaged("the attributes of a decoded node have the wrong length");
+        return damaged(say("the attributes of a decoded node have the wrong length"));
     columns.pointCount = count > 0 ? points : 0;
     columns.values.resize(static_cast<std::size_t>(points * bytesPerPoint));
     return columns;
@@ -64,20 +64,20 @@ Result<DecodeJob> decodeJob(ByteSpan message) {
     ByteReader in(message);
     DecodeJob job;
     if (in.read<std::uint32_t>() != jobMark)
-        return damaged("a message is no decoding job");
+        return damaged(say("a message is no decoding job"));
     job.cloud = in.read<std::uint32_t>();
     if (!readEntry(in, job.entry))
-        return damaged("a decoding job names more blocks than it holds");
+        return damaged(say("a decoding job names more blocks than it holds"));
     job.strata = in.read<std::int32_t>();
     job.block = in.read<std::int32_t>();
     std::uint32_t points = in.read<std::uint32_t>();
     if (points > in.remaining() / sizeof(std::uint32_t))
-        return damaged("a decoding job names more points than it holds");
+        return damaged(say("a decoding job names more points than it holds"));
     job.points.resize(points);
     for (std::uint32_t& point : job.points)
         point = in.read<std::uint32_t>();
     if (!in.ok() || in.remaining() != 0 || job.strata < 0 || job.strata > strataCount)
-        return damaged("a decoding job has the wrong length");
+        return damaged(say("a decoding job has the wrong length"));
     return job;
 }
 
@@ -106,9 +106,9 @@ Bytes encodeAnswer(const Result<ResidentNode>& answer) {
     out.write(static_cast<std::uint8_t>(answer.ok()));
     if (!answer.ok()) {
         out.write(static_cast<std::uint8_t>(answer.error().code));
-        writeText(out, answer.error().what);
+        writeText(out, answer.error().what.marked());
         writeText(out, answer.error().where);
-        writeText(out, answer.error().advice);
+        writeText(out, answer.error().advice.marked());
         return out.take();
     }
     const ResidentNode& node = answer.value();
@@ -131,14 +131,15 @@ Bytes encodeAnswer(const Result<ResidentNode>& answer) {
 Result<ResidentNode> decodeAnswer(ByteSpan message) {
     ByteReader in(message);
     if (in.read<std::uint32_t>() != answerMark)
-        return damaged("a message is no answer to a decoding job");
+        return damaged(say("a message is no answer to a decoding job"));
     if (in.read<std::uint8_t>() == 0) {
         Error error;
         error.code = static_cast<ErrorCode>(in.read<std::uint8_t>());
         error.what = readText(in);
         error.where = readText(in);
         error.advice = readText(in);
-        return in.ok() && error.code <= ErrorCode::cancelled ? error : damaged("an error message is cut");
+        return in.ok() && error.code <= ErrorCode::cancelled ? error
+                                                             : damaged(say("an error message is cut"));
     }
     ResidentNode node;
     node.key = readKey(in);
@@ -152,13 +153,13 @@ Result<ResidentNode> decodeAnswer(ByteSpan message) {
         count = in.read<std::uint32_t>();
     STIPPLE_TRY(columns, readColumns(in, node.pointCount));
     if (!in.ok() || in.remaining() != 0 || node.pointCount > maxPoints)
-        return damaged("an answer to a decoding job has the wrong length");
+        return damaged(say("an answer to a decoding job has the wrong length"));
     // An array is whole or absent: a job for attributes alone has no positions.
     const std::array<std::uint32_t, wordArrayCount> whole{2 * node.pointCount, node.pointCount,
                                                           node.pointCount};
     for (std::size_t i = 0; i < counts.size(); ++i)
         if (counts[i] != 0 && counts[i] != whole[i])
-            return damaged("an array of a decoded node has the wrong length");
+            return damaged(say("an array of a decoded node has the wrong length"));
     node.positionWords.resize(counts[0]);
     node.positionLowWords.resize(counts[1]);
     node.colourWords.resize(counts[2]);

@@ -20,7 +20,7 @@ Result<ResidentNode> decode(ByteSpan message, ByteSpan first, ByteSpan second) {
     STIPPLE_TRY(job, web::decodeJob(message));
     auto cloud = clouds.find(job.cloud);
     if (cloud == clouds.end())
-        return Error{ErrorCode::cancelled, "the cloud was closed", "decoding worker", ""};
+        return Error{ErrorCode::cancelled, say("the cloud was closed"), "decoding worker", ""};
     STIPPLE_TRY(metadata, cloud->second);
     job.metadata = metadata;
     (job.strata > 0 ? job.picture : job.shown).assign(first.begin(), first.end());

@@ -20,7 +20,7 @@ const char* give(std::string value) {
     return text.c_str();
 }
 const char* giveError(const Error& error) {
-    return give(jsonText({{"error", error.sentence()}}));
+    return give(jsonText({{"error", error.said()}}));
 }
 
 Result<nlohmann::json> open(ByteSpan metadata, const char* request) {

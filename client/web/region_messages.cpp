@@ -22,8 +22,8 @@ Result<RegionNode> decodeRegionNode(ByteSpan message) {
     bool isOne = in.read<std::uint32_t>() == regionMark && readEntry(in, node.node.entry);
     node.tested = in.read<std::uint8_t>() != 0;
     if (!isOne || !in.ok() || in.remaining() != 0)
-        return Error{ErrorCode::corrupt, "a message is no node of a region", "region worker",
-                     "reload the page"};
+        return Error{ErrorCode::corrupt, say("a message is no node of a region"), "region worker",
+                     say("reload the page")};
     return node;
 }
 

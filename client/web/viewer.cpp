@@ -17,8 +17,8 @@ namespace stipple::web {
 namespace {
 
 Error contextError() {
-    return {ErrorCode::unsupported, "this browser gives the page no WebGL2", "",
-            "switch hardware acceleration on, or use another browser"};
+    return {ErrorCode::unsupported, say("this browser gives the page no WebGL2"), "",
+            say("switch hardware acceleration on, or use another browser")};
 }
 
 // A frame that brings more to the GPU than this is late on many machines.
@@ -174,13 +174,13 @@ std::string Viewer::countersJson() const {
 std::string Viewer::errorsJson() const {
     nlohmann::json list = nlohmann::json::array(); // what clouds lack is in their states
     if (drawError_)
-        list.push_back(drawError_->sentence());
+        list.push_back(drawError_->said());
     if (renderer_ && !renderer_->limitation().empty())
-        list.push_back(std::string(renderer_->limitation()));
+        list.push_back(renderer_->limitation().marked());
     for (const CloudState& cloud : session_->clouds())
         if (cloud.metadata && cloud.visible)
-            if (std::string lack = lackOf(session_->style(), *cloud.metadata, cloud.name); !lack.empty())
-                list.push_back(std::move(lack));
+            if (Phrase lack = lackOf(session_->style(), *cloud.metadata, cloud.name); !lack.empty())
+                list.push_back(lack.marked());
     return jsonText(list);
 }
 

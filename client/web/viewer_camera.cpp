@@ -99,7 +99,7 @@ bool Viewer::followTrack(double seconds) {
 Status Viewer::showView(const std::string& name) {
     pendingView_ = namedViewFromName(name);
     if (!pendingView_)
-        return Error{ErrorCode::invalidArgument, "the views are top, front, side and iso", name, ""};
+        return Error{ErrorCode::invalidArgument, say("the views are top, front, side and iso"), name, ""};
     applyPendingView();
     return {};
 }

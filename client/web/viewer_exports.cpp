@@ -21,7 +21,7 @@ const char* give(std::string value) {
 }
 
 const char* give(const Status& status) {
-    return give(status.ok() ? std::string() : status.error().sentence());
+    return give(status.ok() ? std::string() : status.error().said());
 }
 
 } // namespace
@@ -31,7 +31,7 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE const char* stipple_create() {
     Result<std::unique_ptr<Viewer>> created = Viewer::create();
     if (!created.ok())
-        return give(created.error().sentence());
+        return give(created.error().said());
     viewer = std::move(*created);
     return give(std::string());
 }
@@ -77,7 +77,7 @@ EMSCRIPTEN_KEEPALIVE void stipple_resize(int width, int height, int inParts) {
 EMSCRIPTEN_KEEPALIVE const char* stipple_draw_part(int left, int bottom, int width, int height) {
     auto drawn = viewer->drawPart({left, bottom, width, height});
     if (!drawn.ok())
-        return give(drawn.error().sentence());
+        return give(drawn.error().said());
     partPixels = drawn->data();
     return give(std::string());
 }
@@ -131,7 +131,7 @@ EMSCRIPTEN_KEEPALIVE void stipple_walk(double forward, double right, double up, 
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_fly_to_camera(const char* json) {
     Result<double> length = viewer->flyToCamera(json);
-    return give(length.ok() ? std::string() : length.error().sentence());
+    return give(length.ok() ? std::string() : length.error().said());
 }
 EMSCRIPTEN_KEEPALIVE double stipple_fly_to_point(double x, double y, double z, double part) {
     return viewer->flyToPoint({x, y, z}, part);
@@ -144,7 +144,7 @@ EMSCRIPTEN_KEEPALIVE int stipple_fly(double t) {
 }
 EMSCRIPTEN_KEEPALIVE const char* stipple_set_track(const char* json) {
     Result<double> duration = viewer->setTrack(json);
-    return give(duration.ok() ? std::string() : duration.error().sentence());
+    return give(duration.ok() ? std::string() : duration.error().said());
 }
 EMSCRIPTEN_KEEPALIVE int stipple_follow_track(double seconds) {
     return viewer->followTrack(seconds) ? 1 : 0;
@@ -232,7 +232,7 @@ EMSCRIPTEN_KEEPALIVE std::size_t stipple_region_metadata(std::uint32_t cloud) {
 // The scan's number as text, or a sentence.
 EMSCRIPTEN_KEEPALIVE const char* stipple_region_scan(const char* json) {
     Result<RegionScanId> scan = viewer->scanRegion(json);
-    return scan.ok() ? give(std::to_string(*scan)) : give(scan.error().sentence());
+    return scan.ok() ? give(std::to_string(*scan)) : give(scan.error().said());
 }
 // The size of the next node's message; 0: none is here.
 EMSCRIPTEN_KEEPALIVE std::size_t stipple_region_take(int scan) {

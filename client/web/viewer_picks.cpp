@@ -35,7 +35,7 @@ void addPlace(nlohmann::json& point, const CloudState& cloud, const PointIdentit
 }
 
 std::string pickError(const Error& error) {
-    return jsonText({{"pending", false}, {"error", error.sentence()}});
+    return jsonText({{"pending", false}, {"error", error.said()}});
 }
 
 } // namespace
@@ -43,7 +43,7 @@ std::string pickError(const Error& error) {
 Status Viewer::pick(double x, double y, int radius) {
     picked_.reset();
     if (!renderer_ || drawn_.width == 0)
-        return Error{ErrorCode::invalidArgument, "there is no picture yet", "", ""};
+        return Error{ErrorCode::invalidArgument, say("there is no picture yet"), "", ""};
     return renderer_->startPick(drawn_, {x, y, radius});
 }
 

@@ -17,7 +17,7 @@ std::string Viewer::measureJson(std::string_view request) {
     Result<nlohmann::json> parsed = parseJson(request, "measurement");
     Result<nlohmann::json> answer = parsed.ok() ? survey::measureJson(*parsed) : parsed;
     if (!answer.ok())
-        return jsonText({{"error", answer.error().sentence()}});
+        return jsonText({{"error", answer.error().said()}});
     return jsonText({{"answer", *answer}});
 }
 

@@ -27,7 +27,7 @@ Result<RegionScanId> Viewer::scanRegion(std::string_view text) {
         "attributes", maxScannedAttributes,
         [&](const nlohmann::json& item, const std::string& path) -> Status {
             if (!item.is_number_integer())
-                return Error{ErrorCode::invalidArgument, "attributes are told by their index", path, ""};
+                return Error{ErrorCode::invalidArgument, say("attributes are told by their index"), path, ""};
             wanted.attributes.push_back(item.get<int>());
             return {};
         });
@@ -58,7 +58,7 @@ std::string Viewer::regionProgressJson(RegionScanId id) const {
                      {"bytesRead", progress.bytesRead},
                      {"hierarchyKnown", progress.hierarchyKnown},
                      {"complete", progress.complete},
-                     {"error", progress.error ? nlohmann::json(progress.error->sentence()) : nullptr}});
+                     {"error", progress.error ? nlohmann::json(progress.error->said()) : nullptr}});
 }
 
 void Viewer::endRegionScan(RegionScanId id) {

@@ -53,7 +53,7 @@ void WorkerDecoder::finish(std::uint32_t job) {
 
 void WorkerDecoder::fail(std::uint32_t job, const std::string& detail) {
     if (waiting_.contains(job))
-        ready(job, Error{ErrorCode::ioFailed, detail, "decoding worker", "reload the page"});
+        ready(job, Error{ErrorCode::ioFailed, detail, "decoding worker", say("reload the page")});
 }
 
 void WorkerDecoder::forgetCloud(std::uint32_t cloud) {

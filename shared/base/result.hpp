@@ -2,6 +2,8 @@
 // returns one of these.
 #pragma once
 
+#include "shared/base/phrase.hpp"
+
 #include <string>
 #include <utility>
 #include <variant>
@@ -29,19 +31,24 @@ enum class ErrorCode {
 
 struct Error {
     ErrorCode code = ErrorCode::ioFailed;
-    std::string what;   // what was being done and what went wrong: "the header ends after 12 of 128 bytes"
-    std::string where;  // file or address, and position: "town.stipple, byte 4096"
-    std::string advice; // what to do: "convert the scan again"; may be empty
+    Phrase what;       // what was being done and what went wrong: "the header ends after 12 of 128 bytes"
+    std::string where; // file or address, and position: "town.stipple, byte 4096"
+    Phrase advice;     // what to do: "convert the scan again"; may be empty
     // networkFailed: the server wants to be left alone for so long (Retry-After); 0: it doesn't say.
     int retryAfterSeconds = 0;
 
     // One clear sentence or two, for a person: "town.stipple, byte 4096: the header … . Convert the …"
     std::string sentence() const {
-        std::string text = where.empty() ? what : where + ": " + what;
+        std::string text = where.empty() ? what.text() : where + ": " + what.text();
         if (!advice.empty())
-            text += " (" + advice + ")";
+            text += " (" + advice.text() + ")";
         return text;
     }
+
+    // `where`, `what` and `advice` for programs that say it in another language: marked (phrase.hpp), with an
+    // RS behind the first two.
+    std::string said() const { return where + fieldEnds + what.marked() + fieldEnds + advice.marked(); }
+    static constexpr char fieldEnds = '\x1e';
 
     // The same error, placed: an inner `where` is kept behind the outer one.
     Error at(const std::string& place) const {

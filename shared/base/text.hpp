@@ -24,6 +24,14 @@ template <std::integral T>
 requires(!std::same_as<T, bool> && !std::same_as<T, char>) void append(std::string& to, T part) {
     to += std::to_string(part);
 }
+// A Phrase (phrase.hpp), and what else knows its text.
+template <class T>
+requires requires(const T& part) {
+    { part.text() } -> std::same_as<std::string>;
+}
+void append(std::string& to, const T& part) {
+    to += part.text();
+}
 template <std::floating_point T>
 void append(std::string& to, T part) {
     char buffer[40];

@@ -180,7 +180,7 @@ Status ColourDecoder::decode(int stratum, ByteReader& from, NeighbourChoices cho
     if (stratum == 0) {
         auto width = from.read<std::uint8_t>();
         if (!from.ok() || width > static_cast<std::uint8_t>(ColourWidth::repeated))
-            return Error{ErrorCode::corrupt, cat("unknown colour width ", width), {}, {}};
+            return Error{ErrorCode::corrupt, say("unknown colour width ", width), {}, {}};
         width_ = static_cast<ColourWidth>(width);
     }
     return width_ == ColourWidth::wide ? decodeAs(wide_, stratum, from, choices)
@@ -192,7 +192,7 @@ Status ColourDecoder::decodeAs(std::vector<Word>& known, int stratum, ByteReader
                                NeighbourChoices choices) {
     auto coding = from.read<Coding>();
     if (!from.ok() || coding > Coding::plain || (coding == Coding::plain && channels_ != 1))
-        return Error{ErrorCode::corrupt, "unknown way to store colours", {}, {}};
+        return Error{ErrorCode::corrupt, say("unknown way to store colours"), {}, {}};
     std::vector<Word> fresh(stratumPoints(pointCount_, stratum));
     STIPPLE_CHECK(readResiduals(from, channels_, gate_, fresh));
     if (coding == Coding::predicted)

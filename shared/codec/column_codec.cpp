@@ -66,7 +66,7 @@ Status readRanked(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     std::uint64_t count = readVarint(from);
     if (!from.ok() || count > values.size())
         return Error{
-            ErrorCode::corrupt, cat(count, " distinct values of ", values.size(), " points"), {}, {}};
+            ErrorCode::corrupt, say(count, " distinct values of ", values.size(), " points"), {}, {}};
     std::vector<T> distinct(static_cast<std::size_t>(count));
     STIPPLE_CHECK(readPlanes<T>(from, distinct, gate));
     auto readRanks = [&]<class R>(R) -> Status {
@@ -76,7 +76,7 @@ Status readRanked(ByteReader& from, std::span<T> values, const WorkGate* gate) {
             for (std::size_t i = first; i < end; ++i) {
                 if (ranks[i] >= distinct.size())
                     return Error{
-                        ErrorCode::corrupt, "a value's rank is past the last distinct value", {}, {}};
+                        ErrorCode::corrupt, say("a value's rank is past the last distinct value"), {}, {}};
                 values[i] = distinct[ranks[i]];
             }
             return {};
@@ -122,12 +122,12 @@ template <class T>
 Status decodeComponent(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     auto method = from.read<Method>();
     if (!from.ok())
-        return Error{ErrorCode::truncated, "an attribute ends early", {}, {}};
+        return Error{ErrorCode::truncated, say("an attribute ends early"), {}, {}};
     switch (method) {
     case Method::constant:
         std::fill(values.begin(), values.end(), from.read<T>());
         if (!from.ok())
-            return Error{ErrorCode::truncated, "a constant ends early", {}, {}};
+            return Error{ErrorCode::truncated, say("a constant ends early"), {}, {}};
         return {};
     case Method::plain:
         return readFullSection(from, {reinterpret_cast<std::uint8_t*>(values.data()), values.size_bytes()});
@@ -136,7 +136,7 @@ Status decodeComponent(ByteReader& from, std::span<T> values, const WorkGate* ga
     case Method::ranked:
         return readRanked<T>(from, values, gate);
     }
-    return Error{ErrorCode::corrupt, "unknown way to store an attribute", {}, {}};
+    return Error{ErrorCode::corrupt, say("unknown way to store an attribute"), {}, {}};
 }
 
 template <class T>

@@ -72,7 +72,7 @@ Status decodeAs(ByteReader& from, std::span<const std::uint32_t> order, std::siz
                 ColourWidth width, std::span<std::uint16_t> colours, const WorkGate* gate) {
     auto coding = from.read<Coding>();
     if (!from.ok() || coding > Coding::plain)
-        return Error{ErrorCode::corrupt, "unknown way to store exact colours", {}, {}};
+        return Error{ErrorCode::corrupt, say("unknown way to store exact colours"), {}, {}};
     const std::uint32_t unit = unitOf(width);
     const int shift = shiftOf(width);
     std::vector<T> green;
@@ -113,7 +113,7 @@ Status readExactColour(ByteReader& from, std::span<const std::uint32_t> order, i
                        std::span<std::uint16_t> colours, const WorkGate* gate) {
     auto width = from.read<ColourWidth>();
     if (!from.ok() || width > ColourWidth::repeated)
-        return Error{ErrorCode::corrupt, cat("unknown colour width ", static_cast<int>(width)), {}, {}};
+        return Error{ErrorCode::corrupt, say("unknown colour width ", static_cast<int>(width)), {}, {}};
     auto count = static_cast<std::size_t>(channels);
     return width == ColourWidth::wide ? decodeAs<std::uint16_t>(from, order, count, width, colours, gate)
                                       : decodeAs<std::uint8_t>(from, order, count, width, colours, gate);

@@ -103,7 +103,7 @@ template <class T>
 Status readPlanes(ByteReader& from, std::span<T> values, const WorkGate* gate) {
     auto mode = from.read<std::uint8_t>();
     if (!from.ok() || mode > 1)
-        return Error{ErrorCode::corrupt, "unknown way to store planes", {}, {}};
+        return Error{ErrorCode::corrupt, say("unknown way to store planes"), {}, {}};
     Bytes plane(values.size());
     for (std::size_t byte = 0; byte < sizeof(T); ++byte) {
         STIPPLE_CHECK(readFullSection(from, plane));

@@ -72,10 +72,10 @@ Result<KeyLayout> readLayout(ByteReader& from, int nodeBits) {
         std::uint64_t origin = readVarint(from), step = readVarint(from), extent = readVarint(from);
         layout.lift[a] = from.read<std::uint8_t>();
         if (!from.ok())
-            return Error{ErrorCode::truncated, "the key layout ends early", {}, {}};
+            return Error{ErrorCode::truncated, say("the key layout ends early"), {}, {}};
         if (origin >= limit || step == 0 || step > limit || extent >= limit ||
             extent > (limit - 1 - origin) / step || layout.lift[a] > maxLift)
-            return Error{ErrorCode::corrupt, cat("the key layout of axis ", a, " leaves the node"), {}, {}};
+            return Error{ErrorCode::corrupt, say("the key layout of axis ", a, " leaves the node"), {}, {}};
         layout.origin[a] = static_cast<std::uint32_t>(origin);
         layout.step[a] = static_cast<std::uint32_t>(step);
         layout.extent[a] = static_cast<std::uint32_t>(extent);

@@ -110,17 +110,17 @@ Status PositionDecoder::decode(int stratum, ByteReader& from) {
     ByteSpan stream =
         from.readBytes(static_cast<std::size_t>(std::min<std::uint64_t>(readVarint(from), SIZE_MAX)));
     if (!from.ok())
-        return Error{ErrorCode::truncated, "the bits of the positions end early", {}, {}};
+        return Error{ErrorCode::truncated, say("the bits of the positions end early"), {}, {}};
     PaddedBytes padded(stream);
     BitReader bits(padded);
     if (stratum == 0 && tokenCount != tokens.size())
-        return Error{ErrorCode::corrupt, "stratum 0 has no token for some points", {}, {}};
+        return Error{ErrorCode::corrupt, say("stratum 0 has no token for some points"), {}, {}};
     STIPPLE_CHECK(stratum == 0 ? decodeFirst(bits, tokens)
                                : decodeBetween(stratum, bits, tokens, tokenCount));
     if (layout_.lowBits > 0)
         STIPPLE_CHECK(decodeLows(stratum, bits));
     if (!bits.ok())
-        return Error{ErrorCode::corrupt, "the positions need more bits than there are", {}, {}};
+        return Error{ErrorCode::corrupt, say("the positions need more bits than there are"), {}, {}};
     decoded_ = stratum + 1;
     return {};
 }
@@ -136,10 +136,10 @@ Status PositionDecoder::decodeFirst(BitReader& stream, std::span<const std::uint
         std::uint64_t* to = keys_.data() + first * step;
         for (std::uint8_t token : tokens.subspan(first, end - first)) {
             if (token > layout_.keyBits || !bits.ok())
-                return Error{ErrorCode::corrupt, "a key difference is wider than the key", {}, {}};
+                return Error{ErrorCode::corrupt, say("a key difference is wider than the key"), {}, {}};
             key += readBelowLeadingOne(bits, token);
             if (key > lastKey)
-                return Error{ErrorCode::corrupt, "a key is wider than the node", {}, {}};
+                return Error{ErrorCode::corrupt, say("a key is wider than the node"), {}, {}};
             *to = key;
             to += step;
         }
@@ -173,9 +173,9 @@ Status PositionDecoder::decodeBetween(int stratum, BitReader& stream, std::span<
         choices_[between] = NeighbourChoice::lower;
     }
     if (!reader.fits)
-        return Error{ErrorCode::corrupt, "a key leaves the bracket of its neighbours", {}, {}};
+        return Error{ErrorCode::corrupt, say("a key leaves the bracket of its neighbours"), {}, {}};
     if (reader.token != tokens.data() + tokenCount)
-        return Error{ErrorCode::corrupt, "the positions do not use the tokens that there are", {}, {}};
+        return Error{ErrorCode::corrupt, say("the positions do not use the tokens that there are"), {}, {}};
     stream = reader.bits;
     return {};
 }
@@ -200,7 +200,7 @@ Result<std::vector<Vec3<std::uint32_t>>> PositionDecoder::takePositions() {
         inside = inside && placed;
     }
     if (!inside)
-        return Error{ErrorCode::corrupt, "a point lies outside the extent that its node states", {}, {}};
+        return Error{ErrorCode::corrupt, say("a point lies outside the extent that its node states"), {}, {}};
     return points;
 }
 

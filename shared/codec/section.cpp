@@ -58,11 +58,11 @@ Result<std::size_t> readSection(ByteReader& from, std::span<std::uint8_t> room) 
     std::uint64_t word = readVarint(from);
     ByteSpan stored = from.readBytes(static_cast<std::size_t>(std::min<std::uint64_t>(word / 2, SIZE_MAX)));
     if (!from.ok())
-        return Error{ErrorCode::truncated, "a section ends early", {}, {}};
+        return Error{ErrorCode::truncated, say("a section ends early"), {}, {}};
     if (word % 2 == 0) {
         if (stored.size() > room.size())
             return Error{ErrorCode::corrupt,
-                         cat("a section holds ", stored.size(), " bytes where at most ", room.size(), " fit"),
+                         say("a section holds ", stored.size(), " bytes where at most ", room.size(), " fit"),
                          {},
                          {}};
         std::copy(stored.begin(), stored.end(), room.begin());
@@ -71,7 +71,7 @@ Result<std::size_t> readSection(ByteReader& from, std::span<std::uint8_t> room) 
     std::size_t size =
         ZSTD_decompressDCtx(decompressor(), room.data(), room.size(), stored.data(), stored.size());
     if (ZSTD_isError(size))
-        return Error{ErrorCode::corrupt, cat("zstd refuses a section: ", ZSTD_getErrorName(size)), {}, {}};
+        return Error{ErrorCode::corrupt, say("zstd refuses a section: ", ZSTD_getErrorName(size)), {}, {}};
     return size;
 }
 
@@ -79,7 +79,7 @@ Status readFullSection(ByteReader& from, std::span<std::uint8_t> room) {
     STIPPLE_TRY(size, readSection(from, room));
     if (size != room.size())
         return Error{
-            ErrorCode::corrupt, cat("a section holds ", size, " bytes instead of ", room.size()), {}, {}};
+            ErrorCode::corrupt, say("a section holds ", size, " bytes instead of ", room.size()), {}, {}};
     return {};
 }
 

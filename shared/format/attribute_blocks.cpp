@@ -44,16 +44,16 @@ Status checkPictureAttributes(const CloudMetadata& metadata) {
     for (int a : pictureAttributes(metadata)) {
         if (a < 0)
             return Error{ErrorCode::invalidArgument,
-                         "the cloud has no attributes for the colour of its picture",
+                         say("the cloud has no attributes for the colour of its picture"),
                          {},
                          {}};
         const Attribute& attribute = metadata.schema.attributes[static_cast<std::size_t>(a)];
         if (attribute.type != AttributeType::u16 || attribute.components != 1)
-            return Error{ErrorCode::invalidArgument,
-                         "the attribute \"" + attribute.name +
-                             "\" has to be one uint16 to colour the picture",
-                         {},
-                         {}};
+            return Error{
+                ErrorCode::invalidArgument,
+                say("the attribute \"", attribute.name, "\" has to be one uint16 to colour the picture"),
+                {},
+                {}};
     }
     return {};
 }

@@ -29,20 +29,20 @@ Result<ByteSpan> unframeBlock(ByteSpan block, const std::string& name, std::uint
     auto checksum = reader.read<std::uint32_t>();
     if (!reader.ok())
         return Error{
-            ErrorCode::truncated, cat("the block's frame ends after ", block.size(), " bytes"), where, {}};
+            ErrorCode::truncated, say("the block's frame ends after ", block.size(), " bytes"), where, {}};
     if (size > reader.remaining())
         return Error{ErrorCode::truncated,
-                     cat("the block says that it holds ", size, " bytes, but there are ", reader.remaining()),
+                     say("the block says that it holds ", size, " bytes, but there are ", reader.remaining()),
                      where,
                      {}};
     ByteSpan payload = reader.readBytes(size);
     if (blockChecksum(payload) != checksum)
-        return Error{ErrorCode::corrupt, "the block's checksum does not match its bytes", where,
-                     "the file was altered or damaged; copy or convert it again"};
+        return Error{ErrorCode::corrupt, say("the block's checksum does not match its bytes"), where,
+                     say("the file was altered or damaged; copy or convert it again")};
     ByteSpan padding = reader.readBytes(reader.remaining());
     if (padding.size() >= paddedTo ||
         std::any_of(padding.begin(), padding.end(), [](auto byte) { return byte != 0; }))
-        return Error{ErrorCode::corrupt, "there are bytes behind the block's payload", where, {}};
+        return Error{ErrorCode::corrupt, say("there are bytes behind the block's payload"), where, {}};
     return payload;
 }
 

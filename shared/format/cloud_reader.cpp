@@ -36,8 +36,8 @@ class Reader final : public CloudReader {
         header_ = *header;
         if (std::uint64_t size = source_.sizeBytes(); size > 0 && size != header_.fileBytes)
             return Error{size < header_.fileBytes ? ErrorCode::truncated : ErrorCode::corrupt,
-                         cat("the file has ", size, " bytes instead of ", header_.fileBytes), source_.name(),
-                         "the copy is incomplete or altered; copy it again"};
+                         say("the file has ", size, " bytes instead of ", header_.fileBytes), source_.name(),
+                         say("the copy is incomplete or altered; copy it again")};
         STIPPLE_TRY(block, readNow(source_, header_.metadata));
         auto metadata = parseMetadata(block);
         if (!metadata)
@@ -71,7 +71,7 @@ class Reader final : public CloudReader {
             ++counters.chunksRead;
             counters.bytesRead += next.range.size;
             if (counters.bytesRead > header_.fileBytes)
-                return Error{ErrorCode::corrupt, "the hierarchy chunks overlap", source_.name(), {}};
+                return Error{ErrorCode::corrupt, say("the hierarchy chunks overlap"), source_.name(), {}};
             STIPPLE_TRY(nodes, readChunk(next));
             for (const NodeEntry& node : nodes) {
                 if (isEnough && *isEnough)
@@ -98,7 +98,7 @@ class Reader final : public CloudReader {
         for (std::size_t block : blocksHolding(metadata_, attributes)) {
             if (block >= entry.attributeBytes.size())
                 return Error{ErrorCode::invalidArgument,
-                             "the cloud has no such block",
+                             say("the cloud has no such block"),
                              "node " + entry.key.text(),
                              {}};
             ByteRange range = entry.attributeRange(block);
@@ -164,7 +164,7 @@ Result<std::vector<NodeEntry>> readHierarchyChunk(ByteSource& source, const File
     bool expected = place.parentChildMask == 0 ? !nodes->empty() && nodes->front().key == NodeKey{}
                                                : holdsChildren(*nodes, place.parent, place.parentChildMask);
     if (!expected)
-        return Error{ErrorCode::corrupt, "the hierarchy chunk is about other nodes", where, {}};
+        return Error{ErrorCode::corrupt, say("the hierarchy chunk is about other nodes"), where, {}};
     return nodes;
 }
 

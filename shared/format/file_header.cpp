@@ -12,7 +12,7 @@ namespace {
 constexpr std::array<std::uint8_t, 8> magic{0x89, 'S', 'T', 'P', 'L', '\r', '\n', 0x1A};
 constexpr std::size_t checksumOffset = fileHeaderBytes - 4;
 
-Error inHeader(ErrorCode code, std::string what, std::size_t byte, std::string advice = {}) {
+Error inHeader(ErrorCode code, Phrase what, std::size_t byte, Phrase advice = {}) {
     return Error{code, std::move(what), cat("header, byte ", byte), std::move(advice)};
 }
 } // namespace
@@ -35,25 +35,25 @@ Bytes writeFileHeader(const FileHeader& header) {
 Result<FileHeader> parseFileHeader(ByteSpan bytes) {
     std::size_t known = std::min(bytes.size(), magic.size());
     if (!std::equal(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(known), magic.begin()))
-        return inHeader(ErrorCode::unsupported, "this is no .stipple file", 0,
-                        "convert the scan with `stipple convert`");
+        return inHeader(ErrorCode::unsupported, say("this is no .stipple file"), 0,
+                        say("convert the scan with `stipple convert`"));
     if (bytes.size() < fileHeaderBytes)
         return inHeader(ErrorCode::truncated,
-                        cat("the header ends after ", bytes.size(), " of ", fileHeaderBytes, " bytes"),
+                        say("the header ends after ", bytes.size(), " of ", fileHeaderBytes, " bytes"),
                         bytes.size());
     ByteReader from(bytes.first(fileHeaderBytes));
     from.skip(magic.size());
     auto version = from.read<std::uint32_t>();
     if (version < 1 || version > latestVersion)
         return inHeader(ErrorCode::unsupported,
-                        cat("the file has format version ", version, "; this program reads versions 1 to ",
+                        say("the file has format version ", version, "; this program reads versions 1 to ",
                             latestVersion),
-                        8, "use a newer program, or convert the scan again");
+                        8, say("use a newer program, or convert the scan again"));
     if (blockChecksum(bytes.first(checksumOffset)) != loadLe<std::uint32_t>(bytes.data() + checksumOffset))
-        return inHeader(ErrorCode::corrupt, "the checksum does not match the header", checksumOffset,
-                        "the file was altered or damaged; copy or convert it again");
+        return inHeader(ErrorCode::corrupt, say("the checksum does not match the header"), checksumOffset,
+                        say("the file was altered or damaged; copy or convert it again"));
     if (auto size = from.read<std::uint32_t>(); size != fileHeaderBytes)
-        return inHeader(ErrorCode::corrupt, cat("a header of ", size, " bytes"), 12);
+        return inHeader(ErrorCode::corrupt, say("a header of ", size, " bytes"), 12);
     FileHeader header;
     header.version = version;
     header.fileBytes = from.read<std::uint64_t>();
@@ -66,16 +66,16 @@ Result<FileHeader> parseFileHeader(ByteSpan bytes) {
                range.size <= header.fileBytes - range.offset;
     };
     if (!inside(header.metadata) || header.metadata.size > maxMetadataBytes)
-        return inHeader(ErrorCode::corrupt, "the metadata lie outside the file", 24);
+        return inHeader(ErrorCode::corrupt, say("the metadata lie outside the file"), 24);
     if (!inside(header.rootChunk) || header.rootChunk.size > maxChunkBytes)
-        return inHeader(ErrorCode::corrupt, "the root hierarchy chunk lies outside the file", 40);
+        return inHeader(ErrorCode::corrupt, say("the root hierarchy chunk lies outside the file"), 40);
     return header;
 }
 
 Status checkVersion(const FileHeader& header, const CloudMetadata& metadata) {
     if (std::uint32_t needed = versionFor(metadata); header.version < needed)
         return inHeader(ErrorCode::corrupt,
-                        cat("format version ", header.version, ", but the metadata are of version ", needed),
+                        say("format version ", header.version, ", but the metadata are of version ", needed),
                         8);
     return {};
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint8_t noParent = 0xFF;
 
-Error corrupt(std::string what) {
+Error corrupt(Phrase what) {
     return Error{ErrorCode::corrupt, std::move(what), "hierarchy chunk", {}};
 }
 
@@ -172,21 +172,21 @@ Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata
     auto dataOffset = from.read<std::uint64_t>();
     auto childChunksOffset = from.read<std::uint64_t>();
     if (!from.ok())
-        return Error{ErrorCode::truncated, "the chunk's head ends early", "hierarchy chunk", {}};
+        return Error{ErrorCode::truncated, say("the chunk's head ends early"), "hierarchy chunk", {}};
     std::size_t attributeBlockCount = attributeBlocks(metadata).size();
     std::size_t numbersPerNode = 1 + strataCount + attributeBlockCount;
     if (std::uint64_t{nodeCount} * numbersPerNode > maxChunkNumbers)
         return Error{
-            ErrorCode::limitExceeded, cat("a chunk of ", nodeCount, " nodes"), "hierarchy chunk", {}};
+            ErrorCode::limitExceeded, say("a chunk of ", nodeCount, " nodes"), "hierarchy chunk", {}};
     if (zero != 0 || dataOffset > fileBytes || childChunksOffset > fileBytes)
-        return corrupt("the chunk's head does not fit the file");
+        return corrupt(say("the chunk's head does not fit the file"));
 
     Bytes masks(nodeCount);
     STIPPLE_CHECK(readFullSection(from, masks));
     STIPPLE_TRY(sizes, SplitReader::open(from, nodeCount * numbersPerNode));
     STIPPLE_TRY(chunks, SplitReader::open(from, nodeCount));
     if (from.remaining() > 0)
-        return corrupt("bytes are left over");
+        return corrupt(say("bytes are left over"));
 
     // Where the nodes are: children follow in the order of their parents.
     std::vector<NodeEntry> nodes;
@@ -220,7 +220,7 @@ Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata
         }
     }
     if (!fits || nodes.size() != nodeCount || !chunks.finished())
-        return corrupt("the chunk's nodes do not fit the octree");
+        return corrupt(say("the chunk's nodes do not fit the octree"));
 
     // What they hold.
     auto size32 = [&](std::uint64_t value) {
@@ -242,7 +242,7 @@ Result<std::vector<NodeEntry>> parseHierarchyChunk(const CloudMetadata& metadata
         dataOffset += node.sizeBytes();
     }
     if (!fits || !sizes.finished())
-        return corrupt("the chunk's nodes contradict the size of the file");
+        return corrupt(say("the chunk's nodes contradict the size of the file"));
     return nodes;
 }
 

@@ -20,7 +20,7 @@ class Fields {
     Fields(const Json& object, std::string path, std::optional<Error>& error)
         : object_(object), path_(std::move(path)), error_(error) {
         if (!object.is_object())
-            refuse(path_, "an object");
+            refuse(path_, say("an object"));
     }
 
     const Json* find(const char* name) const {
@@ -45,7 +45,7 @@ class Fields {
     std::int64_t integer(const char* name, std::int64_t low, std::int64_t high) {
         std::int64_t value = toInteger(find(name), pathOf(name));
         if (value < low || value > high)
-            refuse(pathOf(name), cat("a number from ", low, " to ", high));
+            refuse(pathOf(name), say("a number from ", low, " to ", high));
         return value;
     }
     // The index among `names`; 0 for something else.
@@ -79,7 +79,7 @@ class Fields {
         const Json* json = find(name);
         if (json != nullptr && json->is_array())
             return *json;
-        refuse(pathOf(name), "a list");
+        refuse(pathOf(name), say("a list"));
         return none;
     }
 
@@ -94,7 +94,7 @@ class Fields {
             if (text == "Infinity" || text == "-Infinity")
                 return text[0] == '-' ? -infinity : infinity;
         }
-        refuse(path, "a number");
+        refuse(path, say("a number"));
         return 0;
     }
     std::int64_t toInteger(const Json* json, const std::string& path) {
@@ -102,18 +102,18 @@ class Fields {
                     (!json->is_number_unsigned() || json->get<std::uint64_t>() <= INT64_MAX);
         if (fits)
             return json->get<std::int64_t>();
-        refuse(path, "an integer");
+        refuse(path, say("an integer"));
         return 0;
     }
     std::uint64_t toCount(const Json* json, const std::string& path) {
         if (json != nullptr && json->is_number_unsigned())
             return json->get<std::uint64_t>();
-        refuse(path, "a count");
+        refuse(path, say("a count"));
         return 0;
     }
-    void refuse(const std::string& path, std::string expected) {
+    void refuse(const std::string& path, Phrase expected) {
         if (!error_)
-            error_ = Error{ErrorCode::corrupt, cat("\"", path, "\" is not ", expected), "metadata", {}};
+            error_ = Error{ErrorCode::corrupt, say("\"", path, "\" is not ", expected), "metadata", {}};
     }
 
   private:
@@ -129,7 +129,7 @@ class Fields {
         const Json* json = find(name);
         if (json != nullptr && json->is_array() && json->size() == 3)
             return json;
-        refuse(pathOf(name), "a list of three numbers");
+        refuse(pathOf(name), say("a list of three numbers"));
         return nullptr;
     }
 
@@ -171,7 +171,7 @@ Attribute readAttribute(Fields& fields) {
     if (auto known = attributeTypeFromName(type))
         attribute.type = *known;
     else
-        fields.refuse(fields.pathOf("type"), "a known type");
+        fields.refuse(fields.pathOf("type"), say("a known type"));
     attribute.components = static_cast<int>(fields.integer("components", 1, 255));
     attribute.description = fields.text("description");
     attribute.unit = fields.text("unit");
@@ -190,7 +190,7 @@ AttributeStatistics readStatistics(Fields& fields) {
     statistics.deviation = fields.number("deviation");
     for (const Json& pair : fields.list("histogram")) {
         if (!pair.is_array() || pair.size() != 2) {
-            fields.refuse(fields.pathOf("histogram"), "a list of pairs");
+            fields.refuse(fields.pathOf("histogram"), say("a list of pairs"));
             break;
         }
         statistics.histogram.emplace_back(fields.toInteger(&pair[0], fields.pathOf("histogram")),
@@ -203,20 +203,20 @@ AttributeStatistics readStatistics(Fields& fields) {
 void checkWhole(const CloudMetadata& metadata, Fields& fields) {
     for (int axis = 0; axis < 3; ++axis) {
         if (!(metadata.grid.scale[axis] > 0) || !std::isfinite(metadata.grid.scale[axis]))
-            fields.refuse("grid.scale", "positive");
+            fields.refuse("grid.scale", say("positive"));
         if (!std::isfinite(metadata.grid.offset[axis]))
-            fields.refuse("grid.offset", "finite");
+            fields.refuse("grid.offset", say("finite"));
         constexpr std::int64_t farthest = std::int64_t{1} << 62;
         if (metadata.rootCube.min[axis] < -farthest || metadata.rootCube.min[axis] > farthest)
-            fields.refuse("rootCube.min", "within 2^62 steps of zero");
+            fields.refuse("rootCube.min", say("within 2^62 steps of zero"));
     }
     for (std::size_t a = 0; a < metadata.schema.attributes.size(); ++a)
         if (metadata.schema.find(metadata.schema.attributes[a].name) != static_cast<int>(a))
-            fields.refuse(cat("attributes[", a, "].name"), "unique");
+            fields.refuse(cat("attributes[", a, "].name"), say("unique"));
     if (!checkPictureAttributes(metadata))
-        fields.refuse("pictureColour", "a colour that the attributes hold");
+        fields.refuse("pictureColour", say("a colour that the attributes hold"));
     if (metadata.innerColour != InnerColour::exact && metadata.pictureColour == PictureColour::none)
-        fields.refuse("innerColour", "exact, although there is no colour");
+        fields.refuse("innerColour", say("exact, although there is no colour"));
 }
 
 } // namespace
@@ -225,7 +225,7 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
     STIPPLE_TRY(text, unframeBlock(block, "metadata", fileHeaderBytes));
     Json json = Json::parse(text.begin(), text.end(), nullptr, false);
     if (json.is_discarded())
-        return Error{ErrorCode::corrupt, "the text is no JSON", "metadata", {}};
+        return Error{ErrorCode::corrupt, say("the text is no JSON"), "metadata", {}};
     std::optional<Error> error;
     Fields fields(json, "", error);
     CloudMetadata metadata;
@@ -250,7 +250,7 @@ Result<CloudMetadata> parseMetadata(ByteSpan block) {
     metadata.colourIs8Bit = fields.flag("colourIs8Bit");
     const Json& attributes = fields.list("attributes");
     if (attributes.size() > maxAttributes)
-        fields.refuse("attributes", cat("a list of at most ", maxAttributes));
+        fields.refuse("attributes", say("a list of at most ", maxAttributes));
     for (std::size_t a = 0; a < attributes.size() && !error; ++a) {
         Fields attribute(attributes[a], cat("attributes[", a, "]"), error);
         metadata.schema.attributes.push_back(readAttribute(attribute));

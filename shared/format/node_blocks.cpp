@@ -18,7 +18,7 @@ namespace {
 Status checkMemory(std::uint64_t pointCount, std::uint64_t bytesPerPoint) {
     if (pointCount > SIZE_MAX / 2 / bytesPerPoint)
         return Error{
-            ErrorCode::limitExceeded, "the node is too large for the memory of this program", {}, {}};
+            ErrorCode::limitExceeded, say("the node is too large for the memory of this program"), {}, {}};
     return {};
 }
 
@@ -28,27 +28,27 @@ Status checkEntry(const CloudMetadata& metadata, const NodeEntry& entry) {
         std::uint64_t bytes = entry.strataBytes[static_cast<std::size_t>(s)];
         if (stratumPoints(entry.pointCount, s) > maxPointsPerByte * bytes)
             return Error{ErrorCode::corrupt,
-                         cat("stratum ", s, " has ", stratumPoints(entry.pointCount, s), " points in ", bytes,
+                         say("stratum ", s, " has ", stratumPoints(entry.pointCount, s), " points in ", bytes,
                              " bytes"),
                          {},
                          {}};
     }
     if (entry.key.level > metadata.rootCube.bits ||
         (entry.pointCount > 0 && metadata.rootCube.nodeBits(entry.key.level) > maxNodeBits))
-        return Error{ErrorCode::corrupt, "a node of this level cannot hold points", {}, {}};
+        return Error{ErrorCode::corrupt, say("a node of this level cannot hold points"), {}, {}};
     return checkMemory(entry.pointCount, 64); // keys, positions and colour while they are being decoded
 }
 
 Status checkSize(ByteSpan bytes, std::uint64_t expected) {
     if (bytes.size() != expected)
         return Error{bytes.size() < expected ? ErrorCode::truncated : ErrorCode::invalidArgument,
-                     cat(bytes.size(), " bytes came instead of ", expected),
+                     say(bytes.size(), " bytes came instead of ", expected),
                      {},
                      {}};
     return {};
 }
 
-Error corrupt(std::string what) {
+Error corrupt(Phrase what) {
     return Error{ErrorCode::corrupt, std::move(what), {}, {}};
 }
 
@@ -68,7 +68,7 @@ Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry&
         std::size_t size = entry.strataBytes[static_cast<std::size_t>(s)];
         if (stratumPoints(entry.pointCount, s) == 0) {
             if (size != 0)
-                return corrupt(cat("stratum ", s, " has bytes but no points"));
+                return corrupt(say("stratum ", s, " has bytes but no points"));
             continue;
         }
         std::string name = cat("stratum ", s);
@@ -84,7 +84,7 @@ Result<NodePicture> decodeStrata(const CloudMetadata& metadata, const NodeEntry&
                 return placed(status.error());
         ByteSpan padding = reader.readBytes(reader.remaining());
         if (std::any_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte != 0; }))
-            return placed(corrupt("bytes are left over"));
+            return placed(corrupt(say("bytes are left over")));
         at += size;
     }
     STIPPLE_TRY(coordinates, positions.takePositions());
@@ -125,9 +125,9 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
                                        std::size_t block, ByteSpan bytes, const WorkGate* gate) {
     std::vector<AttributeBlock> blocks = attributeBlocks(metadata);
     if (block >= blocks.size() || entry.attributeBytes.size() != blocks.size())
-        return Error{ErrorCode::invalidArgument, "the cloud has no such block", {}, {}};
+        return Error{ErrorCode::invalidArgument, say("the cloud has no such block"), {}, {}};
     if (blocks[block].isExactColour)
-        return Error{ErrorCode::invalidArgument, "exact colours are no attributes of their own", {}, {}};
+        return Error{ErrorCode::invalidArgument, say("exact colours are no attributes of their own"), {}, {}};
     STIPPLE_CHECK(checkSize(bytes, entry.attributeRange(block).size));
     STIPPLE_CHECK(checkEntry(metadata, entry));
     std::vector<Bytes> columns;
@@ -154,7 +154,7 @@ Result<std::vector<Bytes>> decodeBlock(const CloudMetadata& metadata, const Node
     }
     if (reader.remaining() > 0)
         return corrupt(
-            cat("bytes are left over in the attribute block at byte ", entry.attributeRange(block).offset));
+            say("bytes are left over in the attribute block at byte ", entry.attributeRange(block).offset));
     return columns;
 }
 
@@ -165,7 +165,7 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
     if (blocks.empty() || !blocks[0].isExactColour || entry.attributeBytes.size() != blocks.size() ||
         picture.size() > entry.pointCount || picture.colour.size() != channels * picture.size())
         return Error{
-            ErrorCode::invalidArgument, "there is no block of exact colours to this picture", {}, {}};
+            ErrorCode::invalidArgument, say("there is no block of exact colours to this picture"), {}, {}};
     ByteRange range = entry.attributeRange(0);
     STIPPLE_CHECK(checkSize(bytes, range.size));
     if (bytes.empty())
@@ -175,7 +175,7 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
     STIPPLE_TRY(order, progressiveOrder(entry.pointCount, gate));
     Status decoded = readExactColour(reader, order, static_cast<int>(channels), picture.colour, gate);
     if (decoded && reader.remaining() > 0)
-        decoded = corrupt("bytes are left over");
+        decoded = corrupt(say("bytes are left over"));
     return decoded ? decoded : Status(decoded.error().at(cat("exact colours, byte ", range.offset)));
 }
 
@@ -184,7 +184,7 @@ Status decodeExactBlock(const CloudMetadata& metadata, const NodeEntry& entry, B
 Result<NodePicture> decodePicture(const CloudMetadata& metadata, const NodeEntry& entry, int strata,
                                   ByteSpan bytes, const WorkGate* gate) {
     if (strata < 1 || strata > strataCount)
-        return Error{ErrorCode::invalidArgument, cat("a node has no ", strata, " strata"), {}, {}};
+        return Error{ErrorCode::invalidArgument, say("a node has no ", strata, " strata"), {}, {}};
     auto picture = decodeStrata(metadata, entry, strata, bytes, gate);
     if (!picture)
         return picture.error().at("node " + entry.key.text());

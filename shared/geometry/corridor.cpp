@@ -49,7 +49,7 @@ BoxD boxAround(Point2d a, Point2d b, double distance) {
             {std::max(a.x, b.x) + around, std::max(a.y, b.y) + around, infinity}};
 }
 
-Error invalid(std::string what, std::string advice = "") {
+Error invalid(Phrase what, Phrase advice = "") {
     return {ErrorCode::invalidArgument, std::move(what), "", std::move(advice)};
 }
 
@@ -57,14 +57,15 @@ Error invalid(std::string what, std::string advice = "") {
 
 Result<Corridor> Corridor::make(const std::vector<Point2d>& line, double width) {
     if (line.size() < 2)
-        return invalid("a line has at least two points");
+        return invalid(say("a line has at least two points"));
     if (!isExactlySummable(width) || width <= 0)
-        return invalid(cat("the width ", width, " is no distance"), "give a number above 0");
+        return invalid(say("the width ", width, " is no distance"), say("give a number above 0"));
     for (std::size_t i = 0; i < line.size(); ++i) {
         if (!isExactlySummable(line[i].x) || !isExactlySummable(line[i].y))
-            return invalid(cat("point ", i + 1, " of the line is out of range"));
+            return invalid(say("point ", i + 1, " of the line is out of range"));
         if (i > 0 && !(std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y) >= 1e-100))
-            return invalid(cat("points ", i, " and ", i + 1, " of the line are the same"), "leave one out");
+            return invalid(say("points ", i, " and ", i + 1, " of the line are the same"),
+                           say("leave one out"));
     }
     Corridor corridor;
     for (std::size_t i = 0; i + 1 < line.size(); ++i) {

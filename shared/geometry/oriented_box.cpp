@@ -36,9 +36,10 @@ Result<ConvexRegion> orientedBox(Vec3d centre, Vec3d size, const BoxAxes& axes, 
     const int ownAxes = anyHeight ? 2 : 3;
     for (int i = 0; i < ownAxes; ++i) {
         if (!isExactlySummable(centre[i]))
-            return Error{ErrorCode::invalidArgument, "the box's centre is out of range", "", ""};
+            return Error{ErrorCode::invalidArgument, say("the box's centre is out of range"), "", ""};
         if (!isExactlySummable(size[i]) || size[i] < 0)
-            return Error{ErrorCode::invalidArgument, "the box's size is negative or out of range", "", ""};
+            return Error{ErrorCode::invalidArgument, say("the box's size is negative or out of range"), "",
+                         ""};
     }
     std::vector<HalfSpace> sides;
     Vec3d reach;

@@ -105,8 +105,9 @@ std::vector<Point2d> clipToSide(const std::vector<Point2d>& corners, double Poin
     return kept;
 }
 
-Error noPolygon(const char* what) {
-    return Error{ErrorCode::invalidArgument, what, "", "draw the polygon without crossing its own edges"};
+Error noPolygon(Phrase what) {
+    return Error{ErrorCode::invalidArgument, what, "",
+                 say("draw the polygon without crossing its own edges")};
 }
 
 } // namespace
@@ -147,9 +148,9 @@ Result<std::vector<Triangle>> triangulate(PlanPolygon corners) {
     std::iota(left.begin(), left.end(), std::size_t{0});
     double area = signedArea(corners);
     if (!(std::abs(area) > 0))
-        return noPolygon("a polygon needs three corners that are not on one line");
+        return noPolygon(say("a polygon needs three corners that are not on one line"));
     if (crossesItself(corners))
-        return noPolygon("the polygon's edges cross");
+        return noPolygon(say("the polygon's edges cross"));
     if (area < 0)
         std::reverse(left.begin(), left.end());
     std::vector<Triangle> triangles;
@@ -157,7 +158,7 @@ Result<std::vector<Triangle>> triangulate(PlanPolygon corners) {
     while (left.size() > 2) {
         std::size_t at = nextToCut(corners, left, ears);
         if (at == left.size())
-            return noPolygon("the polygon's edges touch");
+            return noPolygon(say("the polygon's edges touch"));
         Place place = placeOf(left, at);
         if (orientation(corners[place.before], corners[place.here], corners[place.after]) > 0)
             triangles.push_back({place.before, place.here, place.after});

@@ -12,8 +12,8 @@ namespace stipple {
 
 namespace {
 
-Error refused(const char* what) {
-    return {ErrorCode::invalidArgument, what, "", "draw the polygon anew"};
+Error refused(Phrase what) {
+    return {ErrorCode::invalidArgument, what, "", say("draw the polygon anew")};
 }
 
 bool isUsable(Vec3d v) {
@@ -44,12 +44,12 @@ struct Picture {
 Result<ScreenPrism> ScreenPrism::make(const ScreenPolygon& polygon) {
     const std::vector<Vec3d>& corners = polygon.corners;
     if (corners.size() < 3 || corners.size() > maxScreenCorners)
-        return refused("a polygon on the screen has 3 to 1000 corners");
+        return refused(say("a polygon on the screen has 3 to 1000 corners"));
     bool usable = isUsable(polygon.forward) && length(polygon.forward) > 0 &&
                   std::all_of(corners.begin(), corners.end(), isUsable) &&
                   (!polygon.eye || isUsable(*polygon.eye));
     if (!usable)
-        return refused("the polygon's numbers are out of range");
+        return refused(say("the polygon's numbers are out of range"));
     const Picture picture(polygon.forward);
     const Vec3d at = polygon.eye.value_or(corners.front());
     std::vector<Vec3d> rays; // from `at` to the corners
@@ -58,7 +58,7 @@ Result<ScreenPrism> ScreenPrism::make(const ScreenPolygon& polygon) {
         Vec3d ray = corner - at;
         double depth = dot(ray, picture.forward);
         if (polygon.eye && !(depth > 1e-9 * length(ray)))
-            return refused("a corner of the polygon lies beside or behind the eye");
+            return refused(say("a corner of the polygon lies beside or behind the eye"));
         double scale = polygon.eye ? 1 / depth : 1;
         plan.push_back({dot(ray, picture.right) * scale, dot(ray, picture.up) * scale});
         rays.push_back(ray);
@@ -77,7 +77,7 @@ Result<ScreenPrism> ScreenPrism::make(const ScreenPolygon& polygon) {
             Vec3d normal = usableNormal(across);
             Vec3d from = polygon.eye ? at : corners[low];
             if (length(normal) == 0)
-                return refused("two corners of the polygon show at one place");
+                return refused(say("two corners of the polygon show at one place"));
             bool isInside = dot(normal, corners[c] - from) < 0;
             sides.push_back({isInside ? normal : normal * -1.0, from, 0});
         }

@@ -34,12 +34,12 @@ class FileSource final : public ByteSource {
             return failure();
         if (now.st_size != opened_.st_size || now.st_mtim.tv_sec != opened_.st_mtim.tv_sec ||
             now.st_mtim.tv_nsec != opened_.st_mtim.tv_nsec)
-            return Error{ErrorCode::changed, "the file was changed while it was open", path_,
-                         "open it again"};
+            return Error{ErrorCode::changed, say("the file was changed while it was open"), path_,
+                         say("open it again")};
         std::uint64_t size = sizeBytes();
         if (range.offset > size || (range.offset == size && range.size > 0))
             return Error{ErrorCode::truncated,
-                         cat("byte ", range.offset, " was asked for, but the file has only ", size), path_,
+                         say("byte ", range.offset, " was asked for, but the file has only ", size), path_,
                          ""};
         Bytes bytes(static_cast<std::size_t>(std::min(range.size, size - range.offset)));
         std::size_t got = 0;
@@ -51,13 +51,13 @@ class FileSource final : public ByteSource {
             if (part < 0)
                 return failure();
             if (part == 0)
-                return Error{ErrorCode::changed, "the file became shorter while it was read", path_, ""};
+                return Error{ErrorCode::changed, say("the file became shorter while it was read"), path_, ""};
             got += static_cast<std::size_t>(part);
         }
         return bytes;
     }
     Error failure() const {
-        return {ErrorCode::ioFailed, cat("can't be read: ", std::strerror(errno)), path_, ""};
+        return {ErrorCode::ioFailed, say("can't be read: ", std::strerror(errno)), path_, ""};
     }
 
     int descriptor_;
@@ -71,7 +71,7 @@ Error cantOpen(const std::string& path, int reason) {
                          : reason == EACCES ? "ask for permission to read it"
                                             : "";
     return {reason == ENOENT ? ErrorCode::notFound : ErrorCode::ioFailed,
-            cat("can't be opened: ", std::strerror(reason)), path, advice};
+            say("can't be opened: ", std::strerror(reason)), path, advice};
 }
 
 } // namespace
@@ -84,7 +84,7 @@ Result<std::unique_ptr<ByteSource>> openFileSource(const std::string& path) {
     struct stat opened {};
     if (::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode)) {
         ::close(descriptor);
-        return Error{ErrorCode::invalidArgument, "is not a regular file", path, ""};
+        return Error{ErrorCode::invalidArgument, say("is not a regular file"), path, ""};
     }
     return std::unique_ptr<ByteSource>(new FileSource(descriptor, opened, path));
 }

@@ -10,7 +10,7 @@ ByteSource::RequestId MemorySource::read(ByteRange range, Completion done) {
     RequestId id = ++next_;
     if (range.offset > bytes_.size() || (range.offset == bytes_.size() && range.size > 0)) {
         done(Error{ErrorCode::truncated,
-                   cat("byte ", range.offset, " was asked for, but there are only ", bytes_.size()), name_,
+                   say("byte ", range.offset, " was asked for, but there are only ", bytes_.size()), name_,
                    ""});
         return id;
     }

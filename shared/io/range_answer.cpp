@@ -62,7 +62,7 @@ std::optional<ContentRange> parseContentRange(std::string_view text) {
 }
 
 Error changedError(const std::string& where) {
-    return {ErrorCode::changed, "the file was replaced while it was being read", where, reloadAdvice};
+    return {ErrorCode::changed, say("the file was replaced while it was being read"), where, reloadAdvice};
 }
 
 // A validator that only one side has says nothing.
@@ -93,14 +93,14 @@ Result<std::uint64_t> judgePart(ByteRange asked, const RangeAnswer& answer, File
     }
     if (!part || !part->satisfied)
         return Error{ErrorCode::networkFailed,
-                     cat("the server's Content-Range \"", answer.contentRange, "\" is no range"), where,
+                     say("the server's Content-Range \"", answer.contentRange, "\" is no range"), where,
                      rangeAdvice};
     STIPPLE_CHECK(checkVersion(answer, part->sizeBytes, version, where));
     // A part may end early only at the end of the file.
     std::uint64_t fileEnd = part->sizeBytes.value_or(asked.end());
     if (part->first != asked.offset || part->last + 1 != std::min(asked.end(), fileEnd))
         return Error{ErrorCode::networkFailed,
-                     cat("asked for bytes ", asked.offset, " to ", asked.end() - 1, ", the server sent \"",
+                     say("asked for bytes ", asked.offset, " to ", asked.end() - 1, ", the server sent \"",
                          answer.contentRange, "\""),
                      where, rangeAdvice};
     return part->last - part->first + 1;
@@ -114,16 +114,16 @@ Result<std::uint64_t> judgeWhole(ByteRange asked, const RangeAnswer& answer, Fil
         STIPPLE_CHECK(checkVersion(answer, answer.contentLength, version, where));
         return *answer.contentLength;
     }
-    return Error{ErrorCode::unsupported, "the server ignores Range and sends the whole file", where,
+    return Error{ErrorCode::unsupported, say("the server ignores Range and sends the whole file"), where,
                  rangeAdvice};
 }
 
 Error accessError(int status, const std::string& where) {
     if (status == 401)
-        return {ErrorCode::accessDenied, "the server wants to know who asks (status 401)", where,
-                "give a token that it accepts, or an address that has one in it"};
-    return {ErrorCode::accessDenied, "the server refuses access (status 403)", where,
-            "ask for the right to read it; the address may be signed and have expired"};
+        return {ErrorCode::accessDenied, say("the server wants to know who asks (status 401)"), where,
+                say("give a token that it accepts, or an address that has one in it")};
+    return {ErrorCode::accessDenied, say("the server refuses access (status 403)"), where,
+            say("ask for the right to read it; the address may be signed and have expired")};
 }
 
 // What is no whole number is taken as if the field weren't there.
@@ -135,12 +135,12 @@ int secondsOf(std::string_view retryAfter) {
 }
 
 Error statusError(const RangeAnswer& answer, const std::string& where) {
-    Error error{ErrorCode::networkFailed, cat("the server answered with status ", answer.status), where,
-                "try again later"};
+    Error error{ErrorCode::networkFailed, say("the server answered with status ", answer.status), where,
+                say("try again later")};
     if (answer.status == 429)
-        error.what = "the server has had too many requests (status 429)";
+        error.what = say("the server has had too many requests (status 429)");
     if (answer.status == 503)
-        error.what = "the server is busy or away (status 503)";
+        error.what = say("the server is busy or away (status 503)");
     error.retryAfterSeconds = secondsOf(answer.retryAfter);
     return error;
 }
@@ -151,13 +151,13 @@ std::string versionCaution(const FileVersion& version) {
     if (!version.pinned)
         return {};
     if (version.etag.starts_with("W/"))
-        return "its server names versions by a weak ETag only: bytes that change may go unnoticed";
+        return say("its server names versions by a weak ETag only: bytes that change may go unnoticed");
     if (version.etag.empty() && version.lastModified.empty())
-        return "its server names no version of it (no ETag and no Last-Modified, or they are hidden): a "
-               "replacement of the same size goes unnoticed";
+        return say("its server names no version of it (no ETag and no Last-Modified, or they are hidden): a "
+                   "replacement of the same size goes unnoticed");
     if (version.etag.empty())
-        return "its server names no version of it but the date (no ETag, or it is hidden): a replacement "
-               "within a second goes unnoticed";
+        return say("its server names no version of it but the date (no ETag, or it is hidden): a replacement "
+                   "within a second goes unnoticed");
     return {};
 }
 
@@ -175,9 +175,10 @@ Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answe
     case 404:
     case 410:
         if (version.pinned)
-            return Error{ErrorCode::changed, "the file was removed while it was being read", where,
+            return Error{ErrorCode::changed, say("the file was removed while it was being read"), where,
                          reloadAdvice};
-        return Error{ErrorCode::notFound, "there is no such file on the server", where, "check the address"};
+        return Error{ErrorCode::notFound, say("there is no such file on the server"), where,
+                     say("check the address")};
     case 412:
         return changedError(where);
     case 416: {
@@ -185,9 +186,10 @@ Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answe
         if (range)
             STIPPLE_CHECK(checkVersion(answer, range->sizeBytes, version, where));
         return Error{ErrorCode::truncated,
-                     cat("the file ends before byte ", asked.offset,
-                         range && range->sizeBytes ? cat(", after ", *range->sizeBytes, " bytes") : ""),
-                     where, "copy or convert it again"};
+                     range && range->sizeBytes ? say("the file ends before byte ", asked.offset, ", after ",
+                                                     *range->sizeBytes, " bytes")
+                                               : say("the file ends before byte ", asked.offset),
+                     where, say("copy or convert it again")};
     }
     case 401:
     case 403:
@@ -198,7 +200,7 @@ Result<std::uint64_t> judgeRangeAnswer(ByteRange asked, const RangeAnswer& answe
 }
 
 Error noAnswerInTime(const std::string& where) {
-    return {ErrorCode::networkFailed, timeoutText, where, "try again"};
+    return {ErrorCode::networkFailed, timeoutText, where, say("try again")};
 }
 
 bool isTimeout(const Error& error) {

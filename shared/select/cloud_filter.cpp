@@ -13,7 +13,7 @@ namespace stipple {
 
 namespace {
 
-Error invalid(std::string what, std::string advice = "") {
+Error invalid(Phrase what, Phrase advice = "") {
     return {ErrorCode::invalidArgument, std::move(what), "", std::move(advice)};
 }
 
@@ -124,8 +124,9 @@ Result<int> findAttribute(const Schema& schema, const std::string& name) {
         }
     if (matches == 1)
         return found;
-    return invalid(cat("the cloud has no attribute \"", name, "\""),
-                   schema.attributes.empty() ? "it has positions only" : "it has " + attributeNames(schema));
+    return invalid(say("the cloud has no attribute \"", name, "\""),
+                   schema.attributes.empty() ? say("it has positions only")
+                                             : say("it has ", attributeNames(schema)));
 }
 
 Result<CloudFilter> CloudFilter::make(const CloudMetadata& metadata, const PointFilter& filter) {
@@ -143,9 +144,9 @@ Status CloudFilter::limitRegion() {
     if (filter_.box) {
         for (int axis = 0; axis < 3; ++axis) // also where a side is NaN
             if (!(filter_.box->min[axis] <= filter_.box->max[axis]))
-                return invalid(cat("the box is empty: its ", "xyz"[axis], " goes from ",
+                return invalid(say("the box is empty: its ", "xyz"[axis], " goes from ",
                                    filter_.box->min[axis], " to ", filter_.box->max[axis]),
-                               "give the smaller corner first");
+                               say("give the smaller corner first"));
         if (!reach_.empty())
             reach_ = stepsIn(metadata_->grid, reach_, *filter_.box);
     }
@@ -175,10 +176,10 @@ Status CloudFilter::limitLevels() {
     if (filter_.spacing == 0)
         return {};
     if (!(filter_.spacing > 0) || !std::isfinite(filter_.spacing))
-        return invalid(cat("the spacing ", filter_.spacing, " is no distance"), "give a number above 0");
+        return invalid(say("the spacing ", filter_.spacing, " is no distance"), say("give a number above 0"));
     if (!(metadata_->spacing > 0))
-        return Error{ErrorCode::unsupported, "the cloud does not say how far apart its points are", "",
-                     "export it without a spacing"};
+        return Error{ErrorCode::unsupported, say("the cloud does not say how far apart its points are"), "",
+                     say("export it without a spacing")};
     DistanceMetric metric = distanceMetric(metadata_->grid, metadata_->crs);
     metric_ = metric.weights * metric.unit;
     deepestLevel_ = 0;
@@ -195,7 +196,7 @@ Status CloudFilter::limitAttributes() {
         const auto place = static_cast<std::size_t>(index);
         if (metadata_->schema.attributes[place].components != 1)
             return invalid(
-                cat("\"", condition.attribute, "\" has several values a point, none to filter by"));
+                say("\"", condition.attribute, "\" has several values a point, none to filter by"));
         if (condition.ofMeaning)
             condition.ranges = storedRanges(metadata_->schema.attributes[place], condition.ranges);
         conditionAttributes_.push_back(index);

@@ -45,7 +45,7 @@ Result<PointChooser> PointChooser::make(const CloudMetadata& metadata, const Clo
         std::all_of(made.derived_.begin(), made.derived_.end(), [&](int a) { return a < stored + 2; }) &&
         std::all_of(attributes.begin(), attributes.end(), [](int a) { return a >= 0; });
     if (!areKnown || (!made.derived_.empty() && (!areLast || !filter.hasCorridor())))
-        return Error{ErrorCode::invalidArgument, "there are no such attributes", "", ""};
+        return Error{ErrorCode::invalidArgument, say("there are no such attributes"), "", ""};
     made.read_ = made.stored_;
     for (int attribute : filter.testedAttributes()) {
         auto place = std::find(made.read_.begin(), made.read_.end(), attribute);
@@ -63,7 +63,7 @@ Result<PointBatch> PointChooser::choose(const NodeBytes& node, bool tested, Clou
     STIPPLE_TRY(batch, decodeNode(*metadata_, node, gate));
     if (batch.size() != node.entry.pointCount)
         return Error{ErrorCode::corrupt,
-                     cat("node ", node.entry.key.text(), " has ", batch.size(), " points instead of ",
+                     say("node ", node.entry.key.text(), " has ", batch.size(), " points instead of ",
                          node.entry.pointCount),
                      "", ""};
     if (tested) {

@@ -9,7 +9,7 @@ namespace stipple {
 
 namespace {
 
-Error refused(const char* where, std::string what, std::string advice) {
+Error refused(const char* where, Phrase what, Phrase advice) {
     return {ErrorCode::invalidArgument, std::move(what), where, std::move(advice)};
 }
 
@@ -19,11 +19,12 @@ Result<BoxAxes> axesOf(std::span<const double> rotation, bool anyHeight) {
     if (rotation.size() == 1)
         return axesTurned(rotation[0]);
     if (rotation.size() != 4 || anyHeight)
-        return refused("rotation", "it does not fit the box",
-                       "give degrees about z, or for a box with x, y and z a quaternion x,y,z,w");
+        return refused("rotation", say("it does not fit the box"),
+                       say("give degrees about z, or for a box with x, y and z a quaternion x,y,z,w"));
     auto axes = axesOfQuaternion(rotation[0], rotation[1], rotation[2], rotation[3]);
     if (!axes)
-        return refused("rotation", "a quaternion of length 0 turns nothing", "0,0,0,1 is no rotation");
+        return refused("rotation", say("a quaternion of length 0 turns nothing"),
+                       say("0,0,0,1 is no rotation"));
     return *axes;
 }
 
@@ -32,12 +33,12 @@ Result<BoxAxes> axesOf(std::span<const double> rotation, bool anyHeight) {
 Result<std::shared_ptr<const ConvexRegion>>
 rotatedBox(std::span<const double> centre, std::span<const double> size, std::span<const double> rotation) {
     if (centre.size() != 2 && centre.size() != 3)
-        return refused("center", "it is no place", "give x,y or x,y,z");
+        return refused("center", say("it is no place"), say("give x,y or x,y,z"));
     if (size.size() != centre.size())
-        return refused("size", "it does not fit the centre",
-                       "give as many sizes as the centre has coordinates");
+        return refused("size", say("it does not fit the centre"),
+                       say("give as many sizes as the centre has coordinates"));
     if (std::any_of(size.begin(), size.end(), [](double s) { return s < 0; }))
-        return refused("size", "a size is negative", "give sizes of at least 0");
+        return refused("size", say("a size is negative"), say("give sizes of at least 0"));
     bool anyHeight = centre.size() == 2;
     STIPPLE_TRY(axes, axesOf(rotation, anyHeight));
     auto vectorOf = [&](std::span<const double> v) { return Vec3d{v[0], v[1], anyHeight ? 0 : v[2]}; };

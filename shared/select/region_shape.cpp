@@ -9,7 +9,7 @@ namespace stipple {
 
 namespace {
 
-Error wrong(const char* part, const char* what) {
+Error wrong(const char* part, Phrase what) {
     return {ErrorCode::invalidArgument, what, part, ""};
 }
 
@@ -17,10 +17,10 @@ Result<std::shared_ptr<const PolygonRegion>> polygonOf(const std::vector<std::ve
     std::vector<Ring> rings;
     for (const std::vector<Point2d>& ring : corners) {
         if (ring.size() < 3)
-            return wrong("polygon", "each of its rings must have three corners at least");
+            return wrong("polygon", say("each of its rings must have three corners at least"));
         for (Point2d corner : ring)
             if (!isExactlySummable(corner.x) || !isExactlySummable(corner.y))
-                return wrong("polygon", "a corner is out of range");
+                return wrong("polygon", say("a corner is out of range"));
         rings.emplace_back(ring);
     }
     Polygon polygon{std::move(rings.front()), {}};
@@ -64,7 +64,7 @@ Result<PointFilter> filterOf(const RegionShape& shape) {
     }
     if (shape.heights) {
         if (!(shape.heights->min <= shape.heights->max))
-            return wrong("heights", "they must be [low, high] with low <= high");
+            return wrong("heights", say("they must be [low, high] with low <= high"));
         limitHeights(filter, *shape.heights);
     }
     return filter;

@@ -66,14 +66,15 @@ export class CloudProblems {
         return undefined;
     }
 
-    private problem(cloud: CloudState, kind: ProblemKind, error: CloudError, advice = sentence(error.advice)): ShownProblem {
-        const { id, name } = cloud, address = this.model.addressOf(id);
+    private problem(cloud: CloudState, kind: ProblemKind, error: CloudError, instead?: string): ShownProblem {
+        const { id, name } = cloud, address = this.model.addressOf(id), { texts } = this.model;
+        const { where, what, advice } = texts.saidParts(error.said);
         const isRefused = error.code === 'accessDenied' && address !== undefined;
         const problem: ShownProblem = {
             name,
             kind,
-            sentence: sentence(error.where ? `${error.where}: ${error.what}` : error.what),
-            advice,
+            sentence: texts.asSentence(where ? `${where}: ${what}` : what),
+            advice: instead ?? texts.asSentence(advice),
             tokenWasRefused: isRefused && this.requests.hasToken(address),
             ...(isRefused && { giveToken: (token: string) => this.model.access.giveToken(address, token) }),
             retry: () => this.retry(id),
@@ -95,7 +96,4 @@ export class CloudProblems {
 
 function keyOf({ id }: CloudState, { kind, sentence }: ShownProblem): string {
     return [id, kind, sentence].join();
-}
-function sentence(text: string): string {
-    return text === '' ? '' : `${text[0]!.toUpperCase()}${text.slice(1)}.`;
 }

@@ -337,10 +337,10 @@ export class Model extends EventTarget {
 
     /** What can't be drawn as asked for; each once. */
     private tellErrors(): void {
-        for (const sentence of this.viewer.errors()) {
-            if (this.toldErrors.has(sentence)) continue;
-            this.toldErrors.add(sentence);
-            this.notify(sentence);
+        for (const said of this.viewer.errors()) {
+            if (this.toldErrors.has(said)) continue;
+            this.toldErrors.add(said);
+            this.notify(this.texts.said(said));
         }
     }
 }

@@ -1,3 +1,5 @@
+import { Said } from '../texts/said.ts';
+
 /** What the program says to a question about a place of the picture. */
 export interface Reply<T> {
     pending: boolean;
@@ -46,7 +48,7 @@ export class Questions {
             await frame();
             if (this.isStopped || question !== this.last) return undefined; // another took its place
             const { pending, value, error } = take();
-            if (error !== undefined) throw new Error(error);
+            if (error !== undefined) throw new Said(error);
             if (!pending) return value ?? null;
         }
     }

@@ -19,4 +19,4 @@ export type FromRegionWorker =
     | { kind: 'took'; points: number; piece?: Uint8Array<ArrayBuffer> }
     /** `patches`: bytes in place of others that came, in their order. */
     | { kind: 'finished'; answer: RegionAnswer; piece?: Uint8Array<ArrayBuffer>; patches: Patch[] }
-    | { kind: 'failed'; sentence: string };
+    | { kind: 'failed'; said: string };

@@ -2,6 +2,7 @@ import regionUrl from '@programs/stipple_region.wasm?url';
 
 import type { Model } from '../model.ts';
 import { Problem } from '../texts/message.ts';
+import { Said } from '../texts/said.ts';
 import { compiledOnce } from '../wasm/compiled.ts';
 import type { RegionAnswer, RegionRequest } from '../wasm/values.ts';
 import type { Viewer } from '../wasm/viewer.ts';
@@ -70,7 +71,7 @@ export async function workOnRegion(
                 continue;
             }
             const { complete, nodesDone, nodesToDo, error } = viewer.regionProgress(scan);
-            if (error) throw new Error(error);
+            if (error) throw new Said(error);
             listener.progress?.({ share: nodesDone / Math.max(1, nodesDone + nodesToDo), points });
             if (complete && worker.isIdle) break;
             if (document.hidden) viewer.frame(); // the browser calls for no frames now
@@ -109,7 +110,7 @@ class RegionWorker {
 
     constructor() {
         this.worker.onmessage = (event: MessageEvent<FromRegionWorker>) => this.receive(event.data);
-        this.worker.onerror = (event) => this.receive({ kind: 'failed', sentence: event.message || 'the region worker stopped' });
+        this.worker.onerror = (event) => this.receive({ kind: 'failed', said: event.message || 'the region worker stopped' });
     }
 
     send(message: ToRegionWorker, transfer: Transferable[] = []): void {
@@ -123,7 +124,7 @@ class RegionWorker {
     /** The answers since the last call; throws the sentence of a failure. */
     take(): FromRegionWorker[] {
         const answers = this.answers.splice(0);
-        for (const answer of answers) if (answer.kind === 'failed') throw new Error(answer.sentence);
+        for (const answer of answers) if (answer.kind === 'failed') throw new Said(answer.said);
         return answers;
     }
     /** One message, and its answer; nothing else is waited for. */

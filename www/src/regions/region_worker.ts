@@ -1,6 +1,7 @@
 // The region worker: runs client/web/region_exports.cpp on the nodes that it is sent, one work in its life.
 import createRegion from '@programs/stipple_region.mjs';
 
+import { Said } from '../texts/said.ts';
 import { Heap } from '../wasm/heap.ts';
 import type { Address, ProgramOptions, RegionProgram } from '../wasm/program.ts';
 import type { RegionAnswer, RegionScan } from '../wasm/values.ts';
@@ -16,7 +17,7 @@ let program: RegionProgram, heap: Heap;
 /** What a call answers; throws the sentence of its error. */
 function answerOf<T>(at: Address): T | undefined {
     const { answer, error } = JSON.parse(heap.text(at)) as { answer?: T; error?: string };
-    if (error !== undefined) throw new Error(error);
+    if (error !== undefined) throw new Said(error);
     return answer;
 }
 
@@ -65,7 +66,7 @@ async function handle(message: ToRegionWorker): Promise<void> {
         else if (message.kind === 'node') take(message);
         else finish();
     } catch (error) {
-        scope.postMessage({ kind: 'failed', sentence: error instanceof Error ? error.message : String(error) });
+        scope.postMessage({ kind: 'failed', said: error instanceof Said ? error.said : error instanceof Error ? error.message : String(error) });
     }
 }
 

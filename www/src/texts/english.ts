@@ -19,6 +19,7 @@ export const english = {
     'page.fetched': '{bytes} fetched',
     'page.points': { one: '{shown} point', other: '{shown} points' },
     'page.byteUnits': 'B KiB MiB GiB TiB',
+    'page.sentence': '{text}.',
     'page.yes': 'yes',
     'page.no': 'no',
 

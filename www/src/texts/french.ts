@@ -17,6 +17,7 @@ export const french = translation({
     'page.fetched': '{bytes} reçus',
     'page.points': { one: '{shown} point', other: '{shown} points' },
     'page.byteUnits': 'o Kio Mio Gio Tio',
+    'page.sentence': '{text}.',
     'page.yes': 'oui',
     'page.no': 'non',
 

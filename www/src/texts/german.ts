@@ -17,6 +17,7 @@ export const german = translation({
     'page.fetched': '{bytes} geladen',
     'page.points': { one: '{shown} Punkt', other: '{shown} Punkte' },
     'page.byteUnits': 'B KiB MiB GiB TiB',
+    'page.sentence': '{text}.',
     'page.yes': 'ja',
     'page.no': 'nein',
 

@@ -17,6 +17,7 @@ export const japanese = translation({
     'page.fetched': '{bytes} 受信',
     'page.points': '{shown} 点',
     'page.byteUnits': 'B KiB MiB GiB TiB',
+    'page.sentence': '{text}。',
     'page.yes': 'はい',
     'page.no': 'いいえ',
 

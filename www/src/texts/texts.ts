@@ -1,12 +1,19 @@
 import { english } from './english.ts';
 import { type Catalogue, type Key, type Message, Problem, type Values } from './message.ts';
+import { partsOf, type Phrases, Said, sentenceOf } from './said.ts';
+
+/** Of a language: all that the page says, and what the program says (which says it in English). */
+interface Words {
+    catalogue: Catalogue;
+    phrases: Phrases;
+}
 
 /** The languages that there are catalogues of; all but English are loaded when they are wanted. */
 const catalogues = {
-    en: async (): Promise<Catalogue> => english,
-    de: async (): Promise<Catalogue> => (await import('./german.ts')).german,
-    fr: async (): Promise<Catalogue> => (await import('./french.ts')).french,
-    ja: async (): Promise<Catalogue> => (await import('./japanese.ts')).japanese,
+    en: async (): Promise<Words> => ({ catalogue: english, phrases: {} }),
+    de: async (): Promise<Words> => (await import('./german_words.ts')).german,
+    fr: async (): Promise<Words> => (await import('./french_words.ts')).french,
+    ja: async (): Promise<Words> => (await import('./japanese_words.ts')).japanese,
 };
 export type Language = keyof typeof catalogues;
 export const languages = Object.keys(catalogues) as Language[];
@@ -30,7 +37,8 @@ function localeOf(tag: string, language: Language): string {
 
 export async function loadTexts(wanted: readonly string[]): Promise<Texts> {
     const { language, locale } = bestLanguage(wanted);
-    return new Texts(language, locale, await catalogues[language]());
+    const { catalogue, phrases } = await catalogues[language]();
+    return new Texts(language, locale, catalogue, phrases);
 }
 
 /** What is said to a person, and numbers as they write them. */
@@ -43,6 +51,7 @@ export class Texts {
         readonly language: Language = 'en',
         readonly locale: string = language,
         private readonly catalogue: Catalogue = english,
+        private readonly phrases: Phrases = {},
     ) {
         this.rules = new Intl.PluralRules(locale);
         this.counts = new Intl.NumberFormat(locale, { maximumFractionDigits: 0 });
@@ -56,7 +65,20 @@ export class Texts {
     /** The sentence of whatever was thrown. */
     sentenceOf(error: unknown): string {
         if (error instanceof Problem) return this.text(error.key, ...(error.values as Values<Key>));
+        if (error instanceof Said) return this.said(error.said);
         return error instanceof Error ? error.message : String(error);
+    }
+
+    /** What the program says, and its parts. */
+    said(said: string): string {
+        return sentenceOf(said, this.phrases);
+    }
+    saidParts(said: string): ReturnType<typeof partsOf> {
+        return partsOf(said, this.phrases);
+    }
+    /** With a capital and a full stop; empty if the text is. */
+    asSentence(text: string): string {
+        return text === '' ? '' : this.text('page.sentence', { text: `${text[0]!.toLocaleUpperCase(this.locale)}${text.slice(1)}` });
     }
 
     /** Of a name that comes from elsewhere (a class of LAS): its message `prefix.name`, if there is one. */

@@ -130,10 +130,10 @@ export class CloudList extends ModelElement {
                     ${cloud.name}
                 </button>
                 ${cloud.stage === 'failed'
-                    ? html`<small>${cloud.error?.sentence}</small>`
+                    ? html`<small>${this.texts.said(cloud.error?.said ?? '')}</small>`
                     : html`<small title=${cloud.crs ?? ''}>${this.describe(cloud)}</small>`}
-                ${cloud.interrupted ? html`<small class="interrupted">${cloud.interrupted.sentence}</small>` : ''}
-                ${cloud.caution ? html`<small class="caution">${this.text('clouds.note', { note: cloud.caution })}</small>` : ''}
+                ${cloud.interrupted ? html`<small class="interrupted">${this.texts.said(cloud.interrupted.said)}</small>` : ''}
+                ${cloud.caution ? html`<small class="caution">${this.text('clouds.note', { note: this.texts.said(cloud.caution) })}</small>` : ''}
             </div>
             <button class="close" aria-label=${this.text('clouds.close', { name: cloud.name })} @click=${() => this.model.close(cloud.id)}>
                 ✕

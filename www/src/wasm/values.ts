@@ -117,6 +117,8 @@ export interface CloudError {
     where: string;
     advice: string;
     sentence: string;
+    /** For Texts.said(). */
+    said: string;
 }
 
 /** A class of points: client/core/json.hpp, names and colours of shared/points/point_classes.hpp. */

@@ -1,6 +1,7 @@
 import createViewer from '@programs/stipple_viewer.mjs';
 import viewerUrl from '@programs/stipple_viewer.wasm?url';
 
+import { Said } from '../texts/said.ts';
 import { compiledOnce } from './compiled.ts';
 import type { Heap } from './heap.ts';
 import { Host } from './host.ts';
@@ -211,7 +212,7 @@ export class Viewer {
             const { answer, error } = this.json<{ answer?: MeasureAnswer; error?: string }>(
                 this.program._stipple_measure(at!),
             );
-            if (!answer) throw new Error(error);
+            if (!answer) throw new Said(error!);
             return answer;
         });
     }
@@ -225,7 +226,7 @@ export class Viewer {
         const answer = this.heap.lendTexts([JSON.stringify(request)], (at) =>
             this.heap.text(this.program._stipple_region_scan(at!)),
         );
-        if (!/^\d+$/.test(answer)) throw new Error(answer);
+        if (!/^\d+$/.test(answer)) throw new Said(answer);
         return Number(answer);
     }
     /** The next node that was read. */
@@ -301,7 +302,7 @@ export class Viewer {
     }
     private expect(at: Address): void {
         const sentence = this.heap.text(at);
-        if (sentence !== '') throw new Error(sentence);
+        if (sentence !== '') throw new Said(sentence);
     }
 }
 
