@@ -76,9 +76,10 @@ export class Texts {
     saidParts(said: string): ReturnType<typeof partsOf> {
         return partsOf(said, this.phrases);
     }
-    /** With a capital and a full stop; empty if the text is. */
+    /** With a full stop, and a capital unless it begins with an address or a file; empty if the text is. */
     asSentence(text: string): string {
-        return text === '' ? '' : this.text('page.sentence', { text: `${text[0]!.toLocaleUpperCase(this.locale)}${text.slice(1)}` });
+        const first = /^\S+[./]\S/.test(text) ? text[0] : text[0]?.toLocaleUpperCase(this.locale);
+        return first ? this.text('page.sentence', { text: first + text.slice(1) }) : '';
     }
 
     /** Of a name that comes from elsewhere (a class of LAS): its message `prefix.name`, if there is one. */

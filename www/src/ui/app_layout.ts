@@ -92,9 +92,10 @@ export const appLayout = css`
     }
     .notices {
         position: absolute;
+        grid-column: 2 / 4;
         inset: 12px 0 auto;
         margin-inline: auto;
-        width: min(520px, 100% - 24px);
+        width: min(520px, 100%);
     }
     .drop {
         position: absolute;
@@ -122,6 +123,9 @@ export const appLayout = css`
         }
         .controls[closed] {
             width: 100%;
+        }
+        .notices {
+            grid-column: 1;
         }
         .counters {
             grid-column: 1;
