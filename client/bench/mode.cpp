@@ -1,7 +1,7 @@
 #include "client/bench/mode.hpp"
 
 #include "client/core/json.hpp"
-#include "client/core/json_fields.hpp"
+#include "shared/base/json_fields.hpp"
 #include "shared/base/text.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 #include "client/core/camera_track.hpp"
 
 #include "client/core/json.hpp"
-#include "client/core/json_fields.hpp"
+#include "shared/base/json_fields.hpp"
 #include "shared/base/text.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "client/core/colour_json.hpp"
 
 #include "client/core/clips.hpp"
-#include "client/core/region_json.hpp"
+#include "shared/select/region_json.hpp"
 
 #include <algorithm>
 #include <cmath>

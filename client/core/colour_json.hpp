@@ -8,7 +8,7 @@
 //    "filters": [{"attribute": "Return Number", "min": 1, "max": 1}],
 //    "clipBoxes": [{"mode": "hideOutside", "centre": [0, 0, 0], "halfSize": [1, 1, 1],
 //                   "rotation": [0, 0, 0, 1]}],
-//    "clipRegions": [{"mode": "highlight", "region": {…as in client/core/region_json.hpp}}],
+//    "clipRegions": [{"mode": "highlight", "region": {…as in shared/select/region_json.hpp}}],
 //    "highlight": [255, 64, 0]}
 //
 // A limit of a filter that is null or absent is none. A box is turned by a quaternion x, y, z, w of any
@@ -16,7 +16,7 @@
 #pragma once
 
 #include "client/core/colour_style.hpp"
-#include "client/core/json_fields.hpp"
+#include "shared/base/json_fields.hpp"
 
 namespace stipple {
 

@@ -1,8 +1,8 @@
 #include "client/core/json.hpp"
 
 #include "client/core/colour_json.hpp"
-#include "client/core/json_fields.hpp"
 #include "client/core/node_normals.hpp"
+#include "shared/base/json_fields.hpp"
 #include "shared/points/point_classes.hpp"
 
 namespace stipple {

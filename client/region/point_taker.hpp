@@ -56,7 +56,7 @@ std::unique_ptr<PointTaker> countTaker();
 // points]}, a level plane there; "cell": side of the cells, absent: twice the mean distance of the points.
 // Says "cut", "fill", "net", "area", each with "±", "areaWithoutPoints", "pointsInside", "cell".
 Result<std::unique_ptr<PointTaker>> volumeTaker(const Metadata& metadata, const nlohmann::json& request);
-// The region that a volume takes its points from (client/core/region_json.hpp).
+// The region that a volume takes its points from (shared/select/region_json.hpp).
 Result<nlohmann::json> volumeRegion(const nlohmann::json& request);
 
 } // namespace stipple

@@ -1,7 +1,7 @@
 #include "client/region/region_work.hpp"
 
-#include "client/core/region_json.hpp"
 #include "shared/base/text.hpp"
+#include "shared/select/region_json.hpp"
 
 namespace stipple {
 

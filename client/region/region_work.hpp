@@ -3,7 +3,7 @@
 //
 //   {"make": "file" | "profile" | "volume" | "count", "region": {…}, …}
 //
-// Regions are those of client/core/region_json.hpp; further fields, and what comes of them, those of
+// Regions are those of shared/select/region_json.hpp; further fields, and what comes of them, those of
 // point_taker.hpp. A volume makes its region itself.
 //
 // Thread: one at a time.

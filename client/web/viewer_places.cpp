@@ -3,9 +3,9 @@
 
 #include "client/core/camera.hpp"
 #include "client/core/json.hpp"
-#include "client/core/region_json.hpp"
 #include "client/core/screen_polygon.hpp"
 #include "client/survey/measure_json.hpp"
+#include "shared/select/region_json.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,9 +1,9 @@
 // The viewer's scans of regions.
 #include "client/core/json.hpp"
-#include "client/core/json_fields.hpp"
-#include "client/core/region_json.hpp"
 #include "client/web/region_messages.hpp"
 #include "client/web/viewer.hpp"
+#include "shared/base/json_fields.hpp"
+#include "shared/select/region_json.hpp"
 
 #include <nlohmann/json.hpp>
 

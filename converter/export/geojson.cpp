@@ -1,8 +1,8 @@
 #include "converter/export/geojson.hpp"
 
+#include "converter/export/text_file.hpp"
 #include "shared/base/text.hpp"
 #include "shared/geometry/exact_sum.hpp"
-#include "shared/io/file_source.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -174,13 +174,8 @@ Result<GeoJsonRegion> parseGeoJson(std::string_view text, const std::string& wha
 }
 
 Result<GeoJsonRegion> readGeoJson(const std::string& path) {
-    STIPPLE_TRY(source, openFileSource(path));
-    if (source->sizeBytes() > maxGeoJsonBytes)
-        return Error{ErrorCode::limitExceeded,
-                     cat("the polygons take ", source->sizeBytes(), " bytes, more than ", maxGeoJsonBytes),
-                     path, "simplify them"};
-    STIPPLE_TRY(text, readNow(*source, {0, source->sizeBytes()}));
-    return parseGeoJson(std::string_view(reinterpret_cast<const char*>(text.data()), text.size()), path);
+    STIPPLE_TRY(text, readTextFile(path, maxGeoJsonBytes, "the polygons take"));
+    return parseGeoJson(text, path);
 }
 
 } // namespace stipple

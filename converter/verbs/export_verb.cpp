@@ -1,12 +1,14 @@
 // stipple export FILE -o OUT
 #include "converter/export/export_file.hpp"
 #include "converter/export/filter_text.hpp"
+#include "converter/export/text_file.hpp"
 #include "converter/verbs/interrupt.hpp"
 #include "converter/verbs/metadata_json.hpp"
 #include "shared/base/text.hpp"
 #include "shared/cli/number_check.hpp"
 #include "shared/cli/progress.hpp"
 #include "shared/cli/verb.hpp"
+#include "shared/select/region_json.hpp"
 #include "shared/select/region_options.hpp"
 
 #include <fmt/format.h>
@@ -16,7 +18,7 @@ namespace stipple {
 
 namespace {
 struct ExportArguments {
-    std::string input, output, format, box, rotatedBox, polygon, height, profile, classes, where;
+    std::string input, output, format, box, rotatedBox, polygon, height, profile, region, classes, where;
     double width = 0;
     std::uint64_t limit = 0;
     std::vector<std::string> attributes;
@@ -28,6 +30,27 @@ struct ExportArguments {
 
 Error inOption(const char* option, const Error& error) {
     return error.at(option);
+}
+
+// More corners than a region may have take less.
+constexpr std::uint64_t maxRegionBytes = 64ull << 20;
+
+// JSON, or the name of a file of it. Together with what the other options say.
+Status addRegionOption(const std::string& given, PointFilter& filter) {
+    std::size_t start = given.find_first_not_of(" \t\r\n");
+    if (start != std::string::npos && given[start] == '{') {
+        Status added = addRegion(filter, given);
+        return added.ok() ? added : inOption("--region", added.error());
+    }
+    auto text = readTextFile(given, maxRegionBytes, "the region takes");
+    if (!text) {
+        Error error = text.error();
+        if (error.code == ErrorCode::notFound)
+            error.advice = "give JSON that begins with {, or a file of it";
+        return inOption("--region", error);
+    }
+    Status added = addRegion(filter, *text);
+    return added.ok() ? added : inOption("--region", added.error().at(given));
 }
 
 Status readRegion(const ExportArguments& arguments, PointFilter& filter) {
@@ -58,6 +81,11 @@ Status readRegion(const ExportArguments& arguments, PointFilter& filter) {
             return inOption("--profile", corridor.error());
         filter.corridor = std::make_shared<const Corridor>(*std::move(corridor));
     }
+    if (!arguments.region.empty())
+        STIPPLE_CHECK(addRegionOption(arguments.region, filter));
+    if (filter.region && !arguments.polygon.empty())
+        return Error{ErrorCode::invalidArgument, "there is another polygon", "--region",
+                     "give one of the two"};
     return {};
 }
 
@@ -190,6 +218,11 @@ void addExportVerb(CLI::App& program, cli::Action& action) {
         "--polygon", arguments->polygon,
         "Points in the polygons of a GeoJSON file, in the cloud's coordinates (not longitude and "
         "latitude); edges, also those of holes, belong to them");
+    verb->add_option(
+        "--region", arguments->region,
+        "Points in the region of a clip, as the page and the server's /points have it, as JSON or a "
+        "file of it: {\"polygon\": …, \"holes\": …}, {\"line\": …, \"width\": …}, {\"prism\": …} (a "
+        "polygon on the screen) or {\"box\": …}, also several of these, and \"heights\": [low, high]");
     verb->add_option("--height", arguments->height, "Points between two heights: 10..20, 10.. or ..20");
     CLI::Option* profile = verb->add_option("--profile", arguments->profile,
                                             "Points along a line, x,y;x,y;…, within half of --width of it, "

@@ -1,6 +1,5 @@
 #include "server/api/points_request.hpp"
 
-#include "client/core/region_json.hpp"
 #include "converter/export/filter_text.hpp"
 #include "converter/export/polygon_crs.hpp"
 #include "converter/export/region_text.hpp"
@@ -8,6 +7,7 @@
 #include "server/http/problem.hpp"
 #include "shared/base/text.hpp"
 #include "shared/select/cloud_filter.hpp"
+#include "shared/select/region_json.hpp"
 #include "shared/select/region_options.hpp"
 
 #include <nlohmann/json.hpp>
@@ -133,37 +133,13 @@ class RequestReader {
         const std::string* text = query_.find(regionParameter.name);
         if (!text)
             return {};
-        auto json = nlohmann::json::parse(*text, nullptr, false);
-        if (json.is_discarded())
+        if (!nlohmann::json::accept(*text))
             return parameterError(regionParameter.name, "it is no JSON", "percent-encode it");
-        auto stated = regionFromJson(json, std::string(regionParameter.name));
-        if (!stated) {
-            const Error& error = stated.error();
-            std::string place = error.where.size() > regionParameter.name.size()
-                                    ? error.where.substr(regionParameter.name.size() + 1) + ": "
-                                    : "";
+        if (Status added = addRegion(request_.filter, *text); !added.ok()) {
+            const Error& error = added.error();
+            std::string place = error.where.empty() ? "" : error.where + ": ";
             return parameterError(regionParameter.name, place + error.what, error.advice);
         }
-        PointFilter& filter = request_.filter;
-        STIPPLE_CHECK(takePart(stated->convex, filter.convex, "turned box"));
-        STIPPLE_CHECK(takePart(stated->region, filter.region, "polygon"));
-        STIPPLE_CHECK(takePart(stated->corridor, filter.corridor, "line"));
-        STIPPLE_CHECK(takePart(stated->prism, filter.prism, "prism"));
-        if (stated->box) {
-            limitHeights(filter, {stated->box->min.z, stated->box->max.z});
-            if (filter.box->min.z > filter.box->max.z)
-                return parameterError(regionParameter.name, "no height is left", "");
-        }
-        return {};
-    }
-
-    template <class Part>
-    static Status takePart(const Part& stated, Part& part, const char* what) {
-        if (stated && part)
-            return parameterError(regionParameter.name, cat("there is another ", what),
-                                  "give one of the two parameters");
-        if (stated)
-            part = stated;
         return {};
     }
 

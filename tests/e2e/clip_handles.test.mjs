@@ -48,12 +48,12 @@ async function doubleTap(locator) {
 const press = async (...keys) => {
     for (const key of keys) await page.keyboard.press(key);
 };
-/** The list's LAS file has the points that are right, and some. */
-async function checkFile(item, right) {
+/** The list's LAS file has the points that are right, and some; so has the native program's of the region. */
+async function checkFile(item, right, inside) {
     const address = await page.locator(item).locator('a', { hasText: /^LAS$/ }).getAttribute('href');
-    const { points, off } = await exportDifferences(address, right, undefined, { scan, folder: town.folder });
+    const { points, off, native } = await exportDifferences(address, right, inside, { scan, cloud: join(town.folder, 'town.stipple'), folder: town.folder });
     assert.ok(points > 20, `${points} points`);
-    assert.equal(off, 0);
+    assert.deepEqual([off, native], [0, 0]);
 }
 async function draw(tool, places) {
     await page.getByRole('button', { name: tool }).click();
@@ -100,7 +100,7 @@ describe('handles of clips', () => {
         for (let a = 0; a < 3; a++) for (let b = 0; b < 3; b++) assert.ok(Math.abs(dot(tilted.axes[a], tilted.axes[b]) - Number(a === b)) < 1e-14);
         assert.deepEqual(tilted.centre, turned.centre);
         await page.getByText('It is turned about more than z.').waitFor({ state: 'attached' });
-        await checkFile('[data-box="0"]', pointsInBox(scan, tilted));
+        await checkFile('[data-box="0"]', pointsInBox(scan, tilted), { box: { centre: tilted.centre, halfSize: tilted.halfSize, axes: tilted.axes } });
         await page.getByRole('application', { name: 'Point cloud' }).focus();
         await page.keyboard.press('Control+z');
         await page.keyboard.press('Control+z');
@@ -134,7 +134,7 @@ describe('handles of clips', () => {
         const moved = (await region()).polygon;
         assert.deepEqual(moved.slice(0, 5), six.slice(0, 5));
         assert.notDeepEqual(moved[5], six[5]);
-        await checkFile('li[data-region="0"]', pointsInFootprint(scan, { polygon: moved }));
+        await checkFile('li[data-region="0"]', pointsInFootprint(scan, { polygon: moved }), { polygon: moved });
 
         await handle('corner="1"').dblclick();
         assert.deepEqual((await region()).polygon, moved.filter((_, i) => i !== 1));
@@ -147,7 +147,7 @@ describe('handles of clips', () => {
         const left = (await region()).polygon;
         await press('Delete', 'Backspace'); // three are needed
         assert.deepEqual((await region()).polygon, left);
-        await checkFile('li[data-region="0"]', pointsInFootprint(scan, { polygon: left }));
+        await checkFile('li[data-region="0"]', pointsInFootprint(scan, { polygon: left }), { polygon: left });
         for (let i = 0; i < 3; i++) await press('Control+z'); // each key that changed something
         assert.deepEqual((await region()).polygon, moved);
     });
@@ -192,12 +192,12 @@ describe('handles of clips', () => {
         const shownRing = prism.corners.map(show);
         const { inside, unsure } = pointsShownIn(scan, shownRing, show);
         assert.equal(unsure.length, 0);
-        await checkFile('li[data-region="0"]', inside);
+        await checkFile('li[data-region="0"]', inside, { prism });
         // A corner does not cross an edge: it stays where it was last.
         await mouse.drag(handle('corner="5"'), 300, 0);
         const kept = (await region()).prism;
         assert.equal(kept.corners.length, 6);
-        await checkFile('li[data-region="0"]', pointsShownIn(scan, kept.corners.map(show), show).inside);
+        await checkFile('li[data-region="0"]', pointsShownIn(scan, kept.corners.map(show), show).inside, { prism: kept });
         await handle('corner="5"').dblclick();
         await handle('corner="1"').focus();
         await press('Delete');

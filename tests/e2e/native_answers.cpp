@@ -5,10 +5,10 @@
 // A request a line: those of client/survey/measure_json.hpp, and {"make": "volume", …} of
 // client/region/region_work.hpp, whose points are read from CLOUD. An answer a line, {"error": "…"} for a
 // request that can't be answered. Exit status 1: CLOUD can't be read.
-#include "client/core/region_json.hpp"
 #include "client/region/region_work.hpp"
 #include "client/survey/measure_json.hpp"
 #include "shared/io/file_source.hpp"
+#include "shared/select/region_json.hpp"
 
 #include <iostream>
 #include <string>

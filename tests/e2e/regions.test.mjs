@@ -2,7 +2,7 @@
 // polygon hold is what the export of the same box, and every point of the scan, say.
 import assert from 'node:assert/strict';
 import { createServer } from 'node:http';
-import { open, readFile, stat } from 'node:fs/promises';
+import { open, readFile, stat, writeFile } from 'node:fs/promises';
 import { extname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
@@ -234,6 +234,34 @@ describe('regions of a static host', () => {
         assert.ok(inside.length > 1000);
         assert.deepEqual(text(las.points), text(inside));
         await own.page.close();
+    });
+});
+
+describe('stipple export --region', () => {
+    const exported = async (region, ...options) => {
+        const out = join(folder.path, 'region.csv');
+        await stipple('export', cloud, '-o', out, '--force', '--region', region, ...options);
+        return (await readFile(out, 'utf8')).trim().split(/\r?\n/).slice(1);
+    };
+
+    test('takes JSON, or a file of it, together with other options; what is wrong with it is named, and nothing is written', async () => {
+        const places = scan.points.map(scan.placeOf), [x, y] = [0, 1].map((axis) => places.reduce((sum, p) => sum + p[axis], 0) / places.length);
+        const region = JSON.stringify({ polygon: [[x - 40, y - 30], [x + 50, y - 20], [x, y + 60]] }), file = join(folder.path, 'region.json');
+        await writeFile(file, region);
+        const inside = await exported(region);
+        assert.ok(inside.length > 100, `${inside.length}`);
+        assert.deepEqual(await exported(file), inside);
+        const low = await exported(region, '--height', '..10');
+        assert.ok(low.length > 0 && low.length < inside.length);
+        const wrong = [
+            ['{"prism": {"eye": null, "forward": [0, 0, -1], "corners": [[0, 0, 1], [1, 0]]}}', /--region, prism\.corners\[1\]: must be 3 numbers/],
+            ['{"polygon": [[0, 0]', /--region: it is no JSON/],
+            ['absent.json', /absent\.json.*begins with \{, or a file of it/],
+        ];
+        const none = join(folder.path, 'none.las');
+        for (const [text, sentence] of wrong) await assert.rejects(stipple('export', cloud, '-o', none, '--region', text), sentence);
+        await assert.rejects(stipple('export', cloud, '-o', none, '--region', '{"line": [[0, 0], [1, 0]], "width": 1}', '--profile', '0,0;1,1', '--width', '1'), /there is another line/);
+        await assert.rejects(stat(none));
     });
 });
 

@@ -108,32 +108,18 @@ const allRecords = (scan) => Array.from({ length: scan.count }, (_, i) => record
 const scratch = (folder, name) => join(folder, name);
 
 /**
- * Points of a LAS file at `address` against those of `right` (indices of the scan) and those that `stipple export` writes with `options`, if any;
+ * Points of a LAS file at `address` against those of `right` (indices of the scan) and those that `stipple export` writes of the region:
  * {points, off, native}, the last two numbers of points that differ.
  */
-export async function exportDifferences(address, right, options, { scan, cloud, folder }) {
+export async function exportDifferences(address, right, region, { scan, cloud, folder }) {
     const response = await fetch(address);
     if (!response.ok) throw new Error(`${address}: ${response.status}`);
     await writeFile(scratch(folder, 'clip.las'), Buffer.from(await response.arrayBuffer()));
     const found = allRecords(await readScan(scratch(folder, 'clip.las')));
-    const off = multisetDifference(found, right.map((i) => recordOf(scan, i)));
-    if (!options) return { points: right.length, off, native: 0 };
-    await stipple('export', cloud, '-o', scratch(folder, 'native.las'), '--force', ...options);
+    await stipple('export', cloud, '-o', scratch(folder, 'native.las'), '--force', '--region', JSON.stringify(region));
     const native = allRecords(await readScan(scratch(folder, 'native.las')));
+    const off = multisetDifference(found, right.map((i) => recordOf(scan, i)));
     return { points: right.length, off, native: multisetDifference(found, native) };
-}
-
-/** What `stipple export` calls a clip box. */
-export function boxOptions({ centre, halfSize, axes: [[east, north]] }) {
-    const heading = (Math.atan2(north, east) * 180) / Math.PI, sizes = halfSize.map((half) => 2 * half);
-    return ['--rotated-box', `${centre.join(',')};${sizes.join(',')};${heading}`];
-}
-/** And a footprint or a corridor with heights. */
-export async function regionOptions({ polygon, line, width, heights: [low, high] }, folder) {
-    const heights = ['--height', `${low}..${high}`], geojson = scratch(folder, 'footprint.geojson');
-    if (line) return ['--profile', line.map(([x, y]) => `${x},${y}`).join(';'), '--width', String(width), ...heights];
-    await writeFile(geojson, JSON.stringify({ type: 'Polygon', coordinates: [[...polygon, polygon[0]]] }));
-    return ['--polygon', geojson, ...heights];
 }
 
 async function profileRows(text, scan) {

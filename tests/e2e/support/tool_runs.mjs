@@ -4,14 +4,12 @@ import { between, pointsInFootprint, pointsShownIn, projection } from './exact_p
 import { pointsInBox, pointsInCorridor } from './exact_regions.mjs';
 import {
     bound,
-    boxOptions,
     differenceFromNative,
     errorsOf,
     exportDifferences,
     nativeAnswers,
     profileDifferences,
     recordDifferences,
-    regionOptions,
     requestOf,
 } from './tool_checks.mjs';
 import { measurements } from './tool_driver.mjs';
@@ -138,29 +136,30 @@ export class ToolRuns {
         }
         await settle(page);
         const box = (await this.#style()).clipBoxes[0];
-        await this.#export(row, page.locator('[data-box="0"]'), pointsInBox(this.scan, box), boxOptions(box));
+        const { mode, ...inside } = box;
+        await this.#export(row, page.locator('[data-box="0"]'), pointsInBox(this.scan, box), { box: inside });
         await hand.press(page.getByRole('button', { name: 'Delete Box 1' }));
         await settle(page);
     }
 
     /** The corridor of the profile that is open, as a clip between two heights. */
     async #corridor(input, hand) {
-        const { page, scan, folder } = this, row = this.#row('Clip corridor', input);
+        const { page, scan } = this, row = this.#row('Clip corridor', input);
         await page.getByLabel('In the picture').focus();
         await page.keyboard.press('End'); // alone
         const { line, width } = (await this.#region()).region, all = pointsInCorridor(scan, line, width).map(({ index }) => index);
         const heights = await this.#enterHeights('Corridor 1', all, hand);
-        await this.#export(row, this.#item(), between(scan, all, heights), await regionOptions({ line, width, heights }, folder));
+        await this.#export(row, this.#item(), between(scan, all, heights), { line, width, heights });
     }
 
     /** A polygon on the ground, between two heights that points have. */
     async footprint(input, hand) {
-        const { page, scan, folder } = this, row = this.#row('Clip footprint', input);
+        const { scan } = this, row = this.#row('Clip footprint', input);
         const corners = await this.#drawPolygon('Polygon on the ground', hand), { polygon } = (await this.#region()).region;
         if (JSON.stringify(polygon) !== JSON.stringify(corners.map(({ shown }) => shown.position.slice(0, 2))))
             this.faults.push(`Clip footprint by ${input}: took other corners than the picture showed`);
         const heights = await this.#enterHeights('Polygon 1', pointsInFootprint(scan, { polygon }), hand);
-        await this.#export(row, this.#item(), pointsInFootprint(scan, { polygon, heights }), await regionOptions({ polygon, heights }, folder));
+        await this.#export(row, this.#item(), pointsInFootprint(scan, { polygon, heights }), { polygon, heights });
         await this.#deletePolygon(hand);
     }
 
@@ -170,7 +169,7 @@ export class ToolRuns {
         const ring = (await this.#drawPolygon('Polygon on the screen', hand)).map(({ x, y }) => [x, y]);
         const camera = await page.evaluate(() => window.stipple.camera());
         const { inside, unsure } = pointsShownIn(scan, ring, projection(camera, await page.locator('canvas').boundingBox()));
-        await this.#export(row, this.#item(), inside, undefined, unsure.length);
+        await this.#export(row, this.#item(), inside, (await this.#region()).region, unsure.length);
         await this.#deletePolygon(hand);
     }
 
@@ -203,10 +202,10 @@ export class ToolRuns {
         return heights;
     }
     /** The LAS file that a list entry offers, against the points that are right; `unsure` of all may be in it or not. */
-    async #export(row, item, right, options, unsure = 0) {
+    async #export(row, item, right, region, unsure = 0) {
         await settle(this.page);
         const address = await item.locator('a', { hasText: /^LAS$/ }).getAttribute('href');
-        const { points, off, native } = await exportDifferences(address, right, options, this);
+        const { points, off, native } = await exportDifferences(address, right, region, this);
         row.tries++;
         row.points += points;
         row.native = Math.max(row.native, native);

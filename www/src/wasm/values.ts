@@ -47,7 +47,7 @@ export interface ClipBox {
     rotation?: [number, number, number, number];
 }
 
-/** What lies in a region (client/core/region_json.hpp) is hidden or highlighted. */
+/** What lies in a region (shared/select/region_json.hpp) is hidden or highlighted. */
 export interface ClipRegion {
     mode: ClipBox['mode'];
     region: RegionOf;
@@ -227,7 +227,7 @@ export interface ViewCounts {
     histograms: Histogram[];
 }
 
-/** A region of a cloud: client/core/region_json.hpp. */
+/** A region of a cloud: shared/select/region_json.hpp. */
 export type RegionOf = (
     | { box: Omit<ClipBox, 'mode'> }
     | { polygon: [number, number][]; holes?: [number, number][][] }

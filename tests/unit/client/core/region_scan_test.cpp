@@ -3,9 +3,9 @@
 
 #include "client/core/camera.hpp"
 #include "client/core/frame_planner.hpp"
-#include "client/core/region_json.hpp"
 #include "client/core/screen_polygon.hpp"
 #include "shared/geometry/oriented_box.hpp"
+#include "shared/select/region_json.hpp"
 #include "shared/select/region_options.hpp"
 #include "tests/support/region_points.hpp"
 #include "tests/support/scripted_source.hpp"
@@ -413,4 +413,32 @@ TEST_CASE("regions are read from JSON, and what is wrong with them is named") {
         CHECK(region.error().code == ErrorCode::invalidArgument);
         CHECK(region.error().where.find("region") == 0);
     }
+}
+
+TEST_CASE("a region's text is added to what a filter says, and what can't be both is named") {
+    const std::string prism =
+        R"("prism": {"eye": null, "forward": [0, 0, -1], "corners": [[0, 0, 9], [4, 0, 9], [0, 4, 9]]})";
+    const std::string line = R"("line": [[0, 0], [4, 0]], "width": 2)";
+    PointFilter filter;
+    filter.box = BoxD{{-9, -9, -9}, {9, 9, 3}};
+    REQUIRE(addRegion(filter, "{" + prism + R"(, "heights": [1, null]})").ok());
+    REQUIRE(filter.prism);
+    CHECK(filter.prism->contains({1, 1, 100}));
+    CHECK_FALSE(filter.prism->contains({3, 3, 0}));
+    CHECK(filter.box->min.z == 1);
+    CHECK(filter.box->max.z == 3);
+    REQUIRE(addRegion(filter, "{" + line + "}").ok());
+    REQUIRE(filter.corridor);
+
+    auto errorOf = [&](const std::string& text) {
+        PointFilter to = filter;
+        Status added = addRegion(to, text);
+        return added.ok() ? "" : added.error().sentence();
+    };
+    CHECK(errorOf("{" + prism + "}") == "there is another prism (give one of the two)");
+    CHECK(errorOf("{" + line + "}") == "there is another line (give one of the two)");
+    CHECK(errorOf(R"({"heights": [4, 5]})") == "no height is left");
+    CHECK(errorOf("polygon") == "it is no JSON");
+    CHECK(errorOf(R"({"sphere": 1})").find("there is no field 'sphere'") == 0);
+    CHECK(errorOf(R"({"polygon": [[0, 0], [1]]})") == "polygon[1]: must be 2 numbers");
 }

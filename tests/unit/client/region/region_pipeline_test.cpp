@@ -2,13 +2,13 @@
 // it, against every point of the scan tested one by one, and against the export of the same region.
 #include "client/region/region_work.hpp"
 
-#include "client/core/region_json.hpp"
 #include "converter/build/convert.hpp"
 #include "converter/export/export_file.hpp"
 #include "converter/synth/synthesize.hpp"
 #include "shared/geometry/oriented_box.hpp"
 #include "shared/io/file_source.hpp"
 #include "shared/las/las_reader.hpp"
+#include "shared/select/region_json.hpp"
 #include "tests/support/data.hpp"
 #include "tests/support/region_points.hpp"
 #include "tests/support/temporary_folder.hpp"

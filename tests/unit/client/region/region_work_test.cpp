@@ -1,11 +1,11 @@
 // Files, profiles and volumes of regions, from a cloud's nodes, against all of its points tested one by one.
 #include "client/region/region_work.hpp"
 
-#include "client/core/region_json.hpp"
 #include "shared/format/cloud_file.hpp"
 #include "shared/geometry/plan_polygon.hpp"
 #include "shared/io/memory_source.hpp"
 #include "shared/las/las_reader.hpp"
+#include "shared/select/region_json.hpp"
 #include "tests/support/small_cloud.hpp"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,6 @@
 // is wrong. What is absent leaves its variable as it is; what nobody asked for is an error at finish().
 #pragma once
 
-#include "client/core/style.hpp"
 #include "shared/base/result.hpp"
 #include "shared/base/text.hpp"
 #include "shared/geometry/vec3.hpp"
@@ -77,10 +76,12 @@ class FieldReader {
             value[i] = static_cast<std::uint8_t>(read[i]);
     }
 
+    // Of a type with `min` and `max`; null is one that is made of nothing.
+    template <class Range>
     void range(const char* name, Range& value) {
         const Json* field = find(name);
         if (field && field->is_null()) {
-            value = {};
+            value = Range{};
             return;
         }
         std::array<double, 2> read{value.min, value.max};

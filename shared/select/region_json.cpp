@@ -1,6 +1,7 @@
-#include "client/core/region_json.hpp"
+#include "shared/select/region_json.hpp"
 
-#include "client/core/json_fields.hpp"
+#include "shared/base/json_fields.hpp"
+#include "shared/select/region_options.hpp"
 
 #include <cmath>
 #include <limits>
@@ -131,6 +132,17 @@ json placesJson(const Places& places) {
         list.push_back({place.x, place.y});
     return list;
 }
+// The part of a filter that a region states, if none is there yet.
+template <class Part>
+Status addPart(const Part& stated, Part& part, const char* what) {
+    if (stated && part)
+        return Error{ErrorCode::invalidArgument, say("there is another ", what), "",
+                     say("give one of the two")};
+    if (stated)
+        part = stated;
+    return {};
+}
+
 json endJson(double end) {
     return std::isfinite(end) ? json(end) : json(nullptr);
 }
@@ -201,6 +213,29 @@ Result<PointFilter> regionFromJson(const json& region, const std::string& path) 
     STIPPLE_TRY(shape, shapeFromJson(region, path));
     auto filter = filterOf(shape);
     return filter ? std::move(filter) : Result<PointFilter>(inRegion(path, filter.error()));
+}
+
+Status addRegion(PointFilter& filter, std::string_view text) {
+    json region = json::parse(text, nullptr, false);
+    if (region.is_discarded())
+        return Error{ErrorCode::invalidArgument, say("it is no JSON"), "", ""};
+    const std::string path = "region";
+    auto stated = regionFromJson(region, path);
+    if (!stated) {
+        Error error = stated.error();
+        error.where = error.where.size() > path.size() ? error.where.substr(path.size() + 1) : "";
+        return error;
+    }
+    STIPPLE_CHECK(addPart(stated->convex, filter.convex, "turned box"));
+    STIPPLE_CHECK(addPart(stated->region, filter.region, "polygon"));
+    STIPPLE_CHECK(addPart(stated->corridor, filter.corridor, "line"));
+    STIPPLE_CHECK(addPart(stated->prism, filter.prism, "prism"));
+    if (!stated->box)
+        return {};
+    limitHeights(filter, {stated->box->min.z, stated->box->max.z});
+    if (filter.box->min.z > filter.box->max.z)
+        return Error{ErrorCode::invalidArgument, say("no height is left"), "", ""};
+    return {};
 }
 
 } // namespace stipple

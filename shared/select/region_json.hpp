@@ -19,6 +19,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace stipple {
 
@@ -26,6 +27,10 @@ namespace stipple {
 Result<RegionShape> shapeFromJson(const nlohmann::json& region, const std::string& path);
 // The same, made a filter.
 Result<PointFilter> regionFromJson(const nlohmann::json& region, const std::string& path);
+// Adds the region of a JSON text to what a filter says already: both hold. Errors: the same, with the field's
+// place ("prism.corners[2]") as `where`; text that is no JSON; a second turned box, polygon, line or prism;
+// heights of which none are left.
+Status addRegion(PointFilter& filter, std::string_view text);
 // An error of filterOf(), with its part behind `path`.
 Error inRegion(const std::string& path, const Error& error);
 nlohmann::json toJson(const RegionShape& shape);
