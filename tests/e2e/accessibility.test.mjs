@@ -362,6 +362,14 @@ describe('fingers and pen', () => {
         await touch('touchStart', place);
         await touch('touchEnd');
         await page.getByRole('complementary', { name: 'Point' }).waitFor();
+        const broken = await page.locator('stipple-point dd.number').evaluateAll((values) =>
+            values.filter((value) => {
+                const range = document.createRange();
+                range.selectNodeContents(value);
+                return new Set([...range.getClientRects()].map(({ top }) => Math.round(top))).size > 1 || value.scrollWidth > value.clientWidth;
+            }).map((value) => `${value.dataset.value} ${value.textContent}`),
+        );
+        assert.deepEqual(broken, []); // a number is on one line
         await keepScreenshot(page, 'telephone_point');
         assert.deepEqual(town.complaints, []);
     });

@@ -137,6 +137,7 @@ export const appLayout = css`
             grid-column: 1;
             grid-row: 1;
             justify-self: start;
+            width: min(100%, 320px);
             max-height: 40cqh;
         }
         .profile,

@@ -1,4 +1,4 @@
-import { html, type TemplateResult } from 'lit';
+import { css, html, type TemplateResult } from 'lit';
 
 import type { LonLat } from '../map/projection.ts';
 import type { PickedPoint } from '../wasm/values.ts';
@@ -8,7 +8,21 @@ import { controlStyles, factStyles, headStyles } from './shared_styles.ts';
 
 /** The point that was clicked: coordinates and every attribute, as the file has them. */
 export class PointPanel extends ModelElement {
-    static override styles = [controlStyles, headStyles, factStyles];
+    static override styles = [
+        controlStyles,
+        headStyles,
+        factStyles,
+        css`
+            /* Numbers stay whole: names give way. */
+            dl {
+                grid-template-columns: minmax(0, auto) minmax(min-content, 1fr);
+                column-gap: 0.8rem;
+            }
+            .number {
+                white-space: nowrap;
+            }
+        `,
+    ];
 
     /** Of the point that is shown; null: it has none that is known. */
     private lonLat: LonLat | null = null;
@@ -49,7 +63,7 @@ export class PointPanel extends ModelElement {
         const shown = (one: number): string => this.texts.number(one);
         const text = Array.isArray(value) ? value.map(shown).join(', ') : typeof value === 'number' ? shown(value) : value;
         return html`<dt>${name}</dt>
-            <dd data-value=${field}>${text}</dd>`;
+            <dd class=${typeof value === 'number' ? 'number' : ''} data-value=${field}>${text}</dd>`;
     }
 }
 
