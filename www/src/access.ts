@@ -42,7 +42,7 @@ export class Access {
         model.requests.setToken(url, token.trim());
         for (const { id, error, interrupted } of model.clouds) {
             const isRefused = (error ?? interrupted)?.code === 'accessDenied';
-            if (isRefused && new URL(model.addressOf(id) ?? 'file:', document.baseURI).origin === origin) model.problems.retry(id);
+            if (isRefused && new URL(model.opened.addressOf(id) ?? 'file:', document.baseURI).origin === origin) model.problems.retry(id);
         }
         const refused = [...this.refusals.values()].filter(({ refused }) => new URL(refused.url).origin === origin);
         if (model.server?.origin === origin && !this.refusals.has('list')) void model.listing.anew(); // lists have what one may read

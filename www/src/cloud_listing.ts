@@ -32,7 +32,7 @@ export class CloudListing {
     async openAll(): Promise<void> {
         while (this.goesOn && !this.model.isDisposed) await this.more();
         if (this.model.isDisposed) return;
-        for (const { address, name, bounds } of this.clouds) this.model.openAddress(address, name, bounds);
+        for (const { address, name, bounds } of this.clouds) this.model.opened.openAddress(address, name, bounds);
     }
 
     private async add(page: Promise<CloudPage>, before: ListedCloud[]): Promise<void> {

@@ -67,7 +67,7 @@ export class CloudProblems {
     }
 
     private problem(cloud: CloudState, kind: ProblemKind, error: CloudError, instead?: string): ShownProblem {
-        const { id, name } = cloud, address = this.model.addressOf(id), { texts } = this.model;
+        const { id, name } = cloud, address = this.model.opened.addressOf(id), { texts } = this.model;
         const { where, what, advice } = texts.saidParts(error.said);
         const isRefused = error.code === 'accessDenied' && address !== undefined;
         const problem: ShownProblem = {
@@ -78,7 +78,7 @@ export class CloudProblems {
             tokenWasRefused: isRefused && this.requests.hasToken(address),
             ...(isRefused && { giveToken: (token: string) => this.model.access.giveToken(address, token) }),
             retry: () => this.retry(id),
-            ...(kind === 'incomplete' ? { hide: () => this.hide(cloud, problem) } : { close: () => this.model.close(id) }),
+            ...(kind === 'incomplete' ? { hide: () => this.hide(cloud, problem) } : { close: () => this.model.opened.close(id) }),
         };
         return problem;
     }

@@ -165,6 +165,6 @@ export function followDrops(
         hover(false);
         for (const file of event.dataTransfer!.files)
             if (/\.json$/i.test(file.name)) void model.scenes.openFile(file);
-            else model.openFile(file);
+            else model.opened.openFile(file);
     });
 }

@@ -15,6 +15,7 @@ import { Measuring } from './measuring/measuring.ts';
 import { CameraMoves } from './navigation/camera_moves.ts';
 import { Film } from './navigation/film.ts';
 import { type NavigationMode, Navigator } from './navigation/navigator.ts';
+import { OpenClouds } from './open_clouds.ts';
 import { Profile } from './profile/profile.ts';
 import { RegionFiles } from './regions/region_files.ts';
 import { Scenes } from './scene/scenes.ts';
@@ -22,7 +23,7 @@ import type { ShownProblem } from './shown_problem.ts';
 import { Problem } from './texts/message.ts';
 import { Texts } from './texts/texts.ts';
 import type { Tool } from './tool.ts';
-import type { Bounds, CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
+import type { CloudState, Counters, Limits, MeasureAnswer, MeasureRequest, Projection, Style } from './wasm/values.ts';
 import { Requests } from './wasm/requests.ts';
 import { type StyleChange, Viewer } from './wasm/viewer.ts';
 
@@ -42,6 +43,8 @@ export class Model extends EventTarget {
     /** What is said, in the person's language. */
     texts: Texts;
 
+    /** Opens clouds and closes them. */
+    readonly opened: OpenClouds;
     readonly frames: Frames;
     readonly surface: Surface;
     readonly picking: Picking;
@@ -88,7 +91,6 @@ export class Model extends EventTarget {
     /** Something was drawn since the picture was whole. */
     private isUnsettled = false;
     private readonly toldErrors = new Set<string>();
-    private readonly addresses = new Map<string, number>(); // address → cloud id
 
     private constructor(
         readonly canvas: HTMLCanvasElement,
@@ -102,6 +104,7 @@ export class Model extends EventTarget {
         super();
         this.texts = texts;
         this.frames = new Frames(viewer, (drew) => this.drawn(drew));
+        this.opened = new OpenClouds(viewer, this.frames);
         this.surface = new Surface(canvas, viewer);
         this.picking = new Picking(this, viewer);
         this.camera = new CameraMoves(this, viewer);
@@ -133,53 +136,6 @@ export class Model extends EventTarget {
             throw canvas.getContext('webgl2') ? error : new Problem('page.noWebgl');
         });
         return (model = new Model(canvas, viewer, texts, server, requests));
-    }
-
-    // Clouds
-
-    isOpen(address: string): boolean {
-        return this.addresses.has(address);
-    }
-    idOf(address: string): number | undefined {
-        return this.addresses.get(address);
-    }
-    /** Of a cloud that was opened by one. */
-    addressOf(id: number): string | undefined {
-        return [...this.addresses].find(([, opened]) => opened === id)?.[0];
-    }
-
-    /** The cloud's id; that of the open one if it is. With `bounds` nothing is asked for before they are in view. */
-    openAddress(address: string, name = address, bounds?: Bounds | null): number {
-        const opened = this.addresses.get(address);
-        if (opened !== undefined) return opened;
-        const id = this.viewer.addUrl(new URL(address, document.baseURI).href, name, bounds);
-        this.addresses.set(address, id);
-        this.frames.loadSoon();
-        return id;
-    }
-
-    /** A cloud that waits until it is in view. */
-    openNow(id: number): void {
-        this.viewer.openNow(id);
-        this.frames.loadSoon();
-    }
-
-    openFile(file: File): number {
-        const id = this.viewer.addFile(file);
-        this.frames.loadSoon();
-        return id;
-    }
-
-    close(id: number): void {
-        this.viewer.removeCloud(id);
-        const address = this.addressOf(id);
-        if (address !== undefined) this.addresses.delete(address);
-        this.wake();
-    }
-
-    setVisible(id: number, visible: boolean): void {
-        this.viewer.setVisible(id, visible);
-        this.wake();
     }
 
     // Looks

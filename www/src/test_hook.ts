@@ -41,7 +41,7 @@ declare global {
 
 export function installTestHook(model: Model): void {
     window.stipple = {
-        open: (address, name, bounds) => void model.openAddress(address, name, bounds),
+        open: (address, name, bounds) => void model.opened.openAddress(address, name, bounds),
         get prepareRequest() {
             return model.requests.prepare;
         },

@@ -114,9 +114,9 @@ export class Clipping {
         const { server } = this.model;
         if (!server) return [];
         return this.model.listing.clouds
-            .filter((cloud) => this.model.isOpen(cloud.address))
+            .filter((cloud) => this.model.opened.has(cloud.address))
             .map(({ id, name, address }) => ({
-                cloud: this.model.idOf(address)!,
+                cloud: this.model.opened.idOf(address)!,
                 name,
                 api: new URL(`api/v1/clouds/${encodeURIComponent(id)}`, server).href,
             }));
@@ -126,7 +126,7 @@ export class Clipping {
     cloudsWithoutApi(): CloudState[] {
         const served = this.model.listing.clouds.map(({ address }) => address);
         return this.model.clouds.filter(
-            ({ id, stage }) => stage === 'ready' && !served.includes(this.model.addressOf(id) ?? ''),
+            ({ id, stage }) => stage === 'ready' && !served.includes(this.model.opened.addressOf(id) ?? ''),
         );
     }
 

@@ -10,9 +10,9 @@ export class SrcClouds {
         for (const [address, id] of this.ids) {
             if (wanted.has(address)) continue;
             this.ids.delete(address);
-            model.close(id);
+            model.opened.close(id);
         }
         for (const address of wanted)
-            if (!this.ids.has(address)) this.ids.set(address, model.openAddress(address));
+            if (!this.ids.has(address)) this.ids.set(address, model.opened.openAddress(address));
     }
 }

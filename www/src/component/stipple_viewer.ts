@@ -89,10 +89,10 @@ export class StippleViewer extends TellingElement {
      */
     addCloud(source: string | File, name?: string, bounds?: Bounds): number {
         const { model } = this.get();
-        return typeof source === 'string' ? model.openAddress(source, name, bounds) : model.openFile(source);
+        return typeof source === 'string' ? model.opened.openAddress(source, name, bounds) : model.opened.openFile(source);
     }
     removeCloud(id: number): void {
-        this.get().model.close(id);
+        this.get().model.opened.close(id);
     }
     getClouds(): CloudState[] {
         return this.get().model.readClouds();

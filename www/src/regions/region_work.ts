@@ -94,7 +94,7 @@ async function isOpen(model: Model, cloud: number, signal: AbortSignal): Promise
     while (!signal.aborted && !model.isDisposed) {
         const state = model.clouds.find(({ id }) => id === cloud);
         if (state?.stage === 'ready') return;
-        if (state?.stage === 'waiting') model.openNow(cloud);
+        if (state?.stage === 'waiting') model.opened.openNow(cloud);
         if (!state || state.stage === 'failed') throw new Problem('region.notOpen');
         await new Promise((resolve) => setTimeout(resolve, 100));
     }

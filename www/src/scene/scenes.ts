@@ -26,7 +26,7 @@ export class Scenes {
             stipple: 'scene',
             version: sceneVersion,
             clouds: clouds.map(({ id, name, visible, bounds }) => {
-                const address = model.addressOf(id);
+                const address = model.opened.addressOf(id);
                 return { ...(address === undefined ? { file: name } : { address }), name, visible, ...(bounds && { bounds }) };
             }),
             camera: viewer.camera(),
@@ -107,13 +107,13 @@ export class Scenes {
         const { model } = this;
         const kept = new Map<string, number>();
         for (const { id, name } of this.viewer.clouds()) {
-            const address = model.addressOf(id);
+            const address = model.opened.addressOf(id);
             const isWanted = clouds.some((cloud) => (address === undefined ? cloud.file === name : cloud.address === address));
-            if (!isWanted) model.close(id);
+            if (!isWanted) model.opened.close(id);
             else if (address === undefined) kept.set(name, id);
         }
         return clouds.map(({ address, file, name, visible, bounds }) => {
-            const id = address === undefined ? kept.get(file!) : model.openAddress(address, name, bounds);
+            const id = address === undefined ? kept.get(file!) : model.opened.openAddress(address, name, bounds);
             if (id !== undefined) this.viewer.setVisible(id, visible);
             else model.notify(model.texts.text('scene.openByHand', { name: file! }));
             return id ?? 0;

@@ -87,7 +87,7 @@ export class CloudList extends ModelElement {
 
     override render(): TemplateResult {
         const { clouds, listing } = this.model;
-        const offers = listing.clouds.filter((cloud) => !this.model.isOpen(cloud.address));
+        const offers = listing.clouds.filter((cloud) => !this.model.opened.has(cloud.address));
         return html`<h2>${this.text('clouds')}</h2>
             <ul>
                 ${clouds.map((cloud) => this.renderCloud(cloud))}
@@ -95,7 +95,7 @@ export class CloudList extends ModelElement {
                     (cloud) =>
                         html`<button
                             class="offer"
-                            @click=${() => this.model.openAddress(cloud.address, cloud.name)}
+                            @click=${() => this.model.opened.openAddress(cloud.address, cloud.name)}
                         >
                             <span class="name">${cloud.name}</span>
                             <small>${this.points(cloud.pointCount, this.texts.compact(cloud.pointCount))}</small>
@@ -123,7 +123,7 @@ export class CloudList extends ModelElement {
                 .checked=${cloud.visible}
                 ?disabled=${cloud.stage === 'failed'}
                 @change=${(event: Event) =>
-                    this.model.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
+                    this.model.opened.setVisible(cloud.id, (event.target as HTMLInputElement).checked)}
             />
             <div>
                 <button class="name" title=${this.text('clouds.showAll')} @click=${() => void this.model.camera.flyToCloud(cloud.id)}>
@@ -135,7 +135,7 @@ export class CloudList extends ModelElement {
                 ${cloud.interrupted ? html`<small class="interrupted">${this.texts.said(cloud.interrupted.said)}</small>` : ''}
                 ${cloud.caution ? html`<small class="caution">${this.text('clouds.note', { note: this.texts.said(cloud.caution) })}</small>` : ''}
             </div>
-            <button class="close" aria-label=${this.text('clouds.close', { name: cloud.name })} @click=${() => this.model.close(cloud.id)}>
+            <button class="close" aria-label=${this.text('clouds.close', { name: cloud.name })} @click=${() => this.model.opened.close(cloud.id)}>
                 ✕
             </button>
         </li>`;
@@ -152,7 +152,7 @@ export class CloudList extends ModelElement {
 
     private pick(event: Event): void {
         const input = event.target as HTMLInputElement;
-        for (const file of input.files ?? []) this.model.openFile(file);
+        for (const file of input.files ?? []) this.model.opened.openFile(file);
         input.value = '';
     }
 }
