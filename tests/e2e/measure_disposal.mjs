@@ -1,6 +1,7 @@
 // Two viewers on a page, made, drawn and disposed of, again and again: what is left of memory.
-//   node tests/e2e/measure_disposal.mjs [ROUNDS] [--plain]      after scripts/build_web.sh and scripts/build_package.sh; 100 rounds unless told
-// --plain: two bare WebGL contexts instead, with as many bytes in buffers and a framebuffer, given back likewise: what the browser itself keeps.
+//   node tests/e2e/measure_disposal.mjs [ROUNDS] [--plain [PROGRAMS]]      after scripts/build_web.sh and scripts/build_package.sh; 100 rounds unless told
+// --plain: two bare WebGL contexts instead, with as many bytes in buffers and a framebuffer, given back likewise: what the browser itself keeps;
+// with PROGRAMS, each draws with so many different ones (1 unless told).
 // Prints the page's JavaScript heap (collected) and the resident memory of the page's and the GPU's process. The page runs by
 // itself and tells in its title how far it is: a debugger that listens to the network keeps what came of it.
 import { spawn } from 'node:child_process';
@@ -12,6 +13,7 @@ import { executable, flags } from './support/browser.mjs';
 import { installPackage } from './support/embedding.mjs';
 
 const rounds = Number(process.argv[2] ?? 100), isPlain = process.argv.includes('--plain');
+const programs = isPlain ? Number(process.argv[process.argv.indexOf('--plain') + 1] ?? 1) : 0;
 
 /** As the viewers draw: points from a buffer into a framebuffer with depth, then onto the canvas. */
 const plain = `
@@ -28,11 +30,14 @@ for (let round = 1; round <= ${rounds}; round++) {
             gl.compileShader(made);
             return made;
         };
-        const program = gl.createProgram();
-        gl.attachShader(program, shader(gl.VERTEX_SHADER, 'in vec3 p; void main() { gl_Position = vec4(p, 1); gl_PointSize = 2.0; }'));
-        gl.attachShader(program, shader(gl.FRAGMENT_SHADER, 'out vec4 c; void main() { c = vec4(1); }'));
-        gl.linkProgram(program);
-        gl.useProgram(program);
+        const made = Array.from({ length: ${programs} }, (_, i) => {
+            const program = gl.createProgram();
+            gl.attachShader(program, shader(gl.VERTEX_SHADER, 'in vec3 p; void main() { gl_Position = vec4(p, 1); gl_PointSize = 2.0; }'));
+            gl.attachShader(program, shader(gl.FRAGMENT_SHADER, 'out vec4 c; void main() { c = vec4(' + (i + 1) + ') / ${programs}.0; }'));
+            gl.bindAttribLocation(program, 0, 'p');
+            gl.linkProgram(program);
+            return program;
+        });
         gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
         gl.bufferData(gl.ARRAY_BUFFER, Float32Array.from({ length: 4 * points }, () => Math.random() - 0.5), gl.STATIC_DRAW);
         gl.enableVertexAttribArray(0);
@@ -47,7 +52,10 @@ for (let round = 1; round <= ${rounds}; round++) {
         gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture(gl.RGBA8), 0);
         gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, texture(gl.DEPTH_COMPONENT24), 0);
-        gl.drawArrays(gl.POINTS, 0, points);
+        for (const program of made) {
+            gl.useProgram(program);
+            gl.drawArrays(gl.POINTS, 0, points);
+        }
         gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
         gl.blitFramebuffer(0, 0, 420, 300, 0, 0, 420, 300, gl.COLOR_BUFFER_BIT, gl.NEAREST);
         if (gl.getError() !== 0) throw new Error('WebGL refuses');
