@@ -105,6 +105,10 @@ export const controlStyles = css`
         border-radius: 6px;
         padding: 0.25rem 0.4rem;
     }
+    /* Firefox shows arrows all the time, over the digits; those of the keyboard do the same. */
+    input[type='number'] {
+        -moz-appearance: textfield;
+    }
     input[type='range'] {
         width: 100%;
         min-width: 0;
