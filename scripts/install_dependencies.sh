@@ -15,6 +15,9 @@ packages=(
 [ "${1:-}" = --with-fuzzing ] && packages+=(clang libclang-rt-14-dev)
 # scripts/bench_server.sh compares with nginx.
 [ "${1:-}" = --with-server-bench ] && packages+=(wrk nginx openssl)
+# scripts/test_firefox.sh and scripts/test_webkit.sh run the page in other browsers.
+[ "${1:-}" = --with-firefox ] && packages+=(firefox-esr xvfb xauth)
+[ "${1:-}" = --with-webkit ] && packages+=(webkit2gtk-driver xvfb xauth)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -9,10 +9,5 @@ cd "$(dirname "$0")/.."
 for needed in build/release/client/headless/stipple build/release/tests/e2e/native_answers www/dist/index.html; do
   [ -e "$needed" ] || { echo "scripts/test_e2e.sh: $needed is missing; build first" >&2; exit 3; }
 done
-stamp=tests/e2e/node_modules/.complete
-lock=$(sha256sum tests/e2e/package-lock.json tests/e2e/package.json)
-if [ "$(cat "$stamp" 2>/dev/null)" != "$lock" ]; then
-  npm --prefix tests/e2e ci --silent
-  echo "$lock" > "$stamp"
-fi
+scripts/install_test_packages.sh tests/e2e
 exec node --test --test-reporter=spec --test-concurrency=1 "$@" tests/e2e/*.test.mjs

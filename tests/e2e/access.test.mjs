@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { launch, openPage, settleWithPoints } from './support/browser.mjs';
+import { launch, openPage, settleWithPoints, unless } from './support/browser.mjs';
 import { makeTown, scratchFolder, serve, stipple } from './support/program.mjs';
 
 const size = { width: 1100, height: 720 };
@@ -70,7 +70,7 @@ async function giveToken(page, name, given) {
 const noProblem = (page) => page.locator('[data-problem]').first().waitFor({ state: 'detached' });
 
 describe('access', () => {
-    test('a token goes with lists, clouds, profiles and files of its server', async () => {
+    test('a token goes with lists, clouds, profiles and files of its server', { skip: unless('downloads') }, async () => {
         const { page, asked } = await open();
         await page.evaluate(() => window.stipple.open('/clouds/town.stipple', 'Town')); // as the list has it
         await page.locator('[data-problem=stopped]').waitFor();
@@ -88,7 +88,7 @@ describe('access', () => {
         await page.close();
     });
 
-    test('a list that is refused is a problem with a field for a token; so are profiles and files', async () => {
+    test('a list that is refused is a problem with a field for a token; so are profiles and files', { skip: unless('downloads') }, async () => {
         const { page } = await openPage(browser, size);
         const isRefused = {};
         await page.route('**/api/v1/clouds', async (route) => {

@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, openPage, settle } from './support/browser.mjs';
+import { keepScreenshot, openPage, settle, unless } from './support/browser.mjs';
 import { focused, tabTo } from './support/keyboard.mjs';
 import { openTownPage } from './support/town_page.mjs';
 
@@ -237,7 +237,7 @@ describe('on a telephone', () => {
     });
 });
 
-describe('fingers and pen', () => {
+describe('fingers and pen', { skip: unless('touch') }, () => {
     let session;
     before(async () => {
         session = await page.context().newCDPSession(page);

@@ -4,7 +4,7 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, settle } from './support/browser.mjs';
+import { keepScreenshot, settle, unless } from './support/browser.mjs';
 import { minus, norm, openTownPage } from './support/town_page.mjs';
 
 let town, page, complaints;
@@ -100,7 +100,7 @@ describe('annotations', () => {
         await page.locator('stipple-annotations').getByRole('button', { name: 'House', exact: true }).click(); // closed
     });
 
-    test('a scene keeps them, wrong trees are refused, and deleting one takes what belongs to it', async () => {
+    test('a scene keeps them, wrong trees are refused, and deleting one takes what belongs to it', { skip: unless('downloads') }, async () => {
         const before = await annotations();
         const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save' }).click()]);
         const scene = JSON.parse(await readFile(await download.path(), 'utf8'));
@@ -144,7 +144,7 @@ describe('annotations', () => {
         assert.deepEqual(complaints, []);
     });
 
-    test('a tour goes from one to the next, in the order of the tree, past hidden ones, until it is ended', async () => {
+    test('a tour goes from one to the next, in the order of the tree, past hidden ones, until it is ended', { skip: unless('downloads') }, async () => {
         const { position: seen } = await page.evaluate(() => window.stipple.pick(480, 300));
         const there = await camera(), beside = seen.map((value, axis) => value + (axis === 0 ? 3 : 0));
         const list = [

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 import { readFile } from 'node:fs/promises';
 import { after, before, describe, test } from 'node:test';
 
-import { counters, keepScreenshot, settle } from './support/browser.mjs';
+import { counters, keepScreenshot, settle, unless } from './support/browser.mjs';
 import { stipple } from './support/program.mjs';
 import { cross, dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
@@ -93,7 +93,7 @@ describe('the appearance panel', () => {
         assert.deepEqual(counts, expected);
     });
 
-    test('handles set the range: mouse, touch and keyboard', async () => {
+    test('handles set the range: mouse, touch and keyboard', { skip: unless('touch') }, async () => {
         const least = handle('Colours', 'least'), most = handle('Colours', 'greatest');
         // What the field spans now.
         const span = async () => [Number(await least.getAttribute('aria-valuemin')), Number(await most.getAttribute('aria-valuemax'))];

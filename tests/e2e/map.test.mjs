@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
-import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
+import { keepScreenshot, launch, openPage, settle, settleWithPoints, unless } from './support/browser.mjs';
 import { makeTown, scratchFolder, serve, stipple } from './support/program.mjs';
 
 const www = fileURLToPath(new URL('../../www/', import.meta.url));
@@ -104,7 +104,7 @@ describe('the map', () => {
         await page.close();
     });
 
-    test('shows footprint, camera, view cone and measurements where they are, and a click goes there', async () => {
+    test('shows footprint, camera, view cone and measurements where they are, and a click goes there', { skip: unless('downloads') }, async () => {
         const { page } = await openCloud('placed');
         await openMap(page);
         const info = JSON.parse(await stipple('info', join(folder.path, 'placed.stipple'), '--json'));

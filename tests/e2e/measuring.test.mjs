@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, beforeEach, describe, test } from 'node:test';
 
-import { keepScreenshot, settle } from './support/browser.mjs';
+import { keepScreenshot, settle, unless } from './support/browser.mjs';
 import { cross, dot, minus, norm, openTownPage } from './support/town_page.mjs';
 
 const places = [
@@ -197,7 +197,7 @@ describe('measuring', () => {
         assert.equal(await tool('Area').getAttribute('aria-pressed'), 'false');
     });
 
-    test('files for other programs hold what was measured', async () => {
+    test('files for other programs hold what was measured', { skip: unless('downloads') }, async () => {
         const area = await measure('Area', 4);
         await page.keyboard.press('Enter');
         await row('area').getByLabel('Name').fill('Site "A", =1+1');

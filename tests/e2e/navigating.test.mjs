@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, beforeEach, describe, test } from 'node:test';
 
-import { counters, keepScreenshot, settle } from './support/browser.mjs';
+import { counters, keepScreenshot, settle, unless } from './support/browser.mjs';
 import { minus, norm, openTownPage } from './support/town_page.mjs';
 
 let town, page, complaints, first;
@@ -89,7 +89,7 @@ describe('moving about', () => {
         assert.ok(apart(pixelOf(near, place), { x: 470, y: 340 }) < 20); // the first step went by the target's depth
     });
 
-    test('a double click flies to the point, U goes back, shift U forth, F shows all', async () => {
+    test('a double click flies to the point, U goes back, shift U forth, F shows all', { skip: unless('double clicks') }, async () => {
         const { position: place } = await pick(500, 250);
         await page.locator('canvas').dblclick({ position: { x: 500, y: 250 } });
         await page.waitForFunction(

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot } from './support/browser.mjs';
+import { keepScreenshot, unless } from './support/browser.mjs';
 import { openTownPage } from './support/town_page.mjs';
 
 let town, page, complaints, line;
@@ -157,7 +157,7 @@ describe('profiles', () => {
         assert.notEqual(await axes(), before);
     });
 
-    test('its width is changed, it is saved as a picture with axes, and closed while it loads', async () => {
+    test('its width is changed, it is saved as a picture with axes, and closed while it loads', { skip: unless('downloads') }, async () => {
         const before = await shownPoints();
         await page.getByLabel('Width of the profile').fill('12');
         await page.getByLabel('Width of the profile').press('Tab');

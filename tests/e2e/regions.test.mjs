@@ -6,7 +6,7 @@ import { open, readFile, stat, writeFile } from 'node:fs/promises';
 import { extname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 
-import { keepScreenshot, launch, openPage, settle, settleWithPoints } from './support/browser.mjs';
+import { keepScreenshot, launch, openPage, settle, settleWithPoints, unless } from './support/browser.mjs';
 import { makeTown, root, scratchFolder, stipple } from './support/program.mjs';
 import { answerPicker, pickedFile, waitForPicked } from './support/files.mjs';
 import { readLas } from './support/las.mjs';
@@ -79,7 +79,7 @@ async function save(format) {
 }
 
 describe('regions of a static host', () => {
-    test("a clip box's points are saved by the page: those of the export of the same box, and of the scan", async () => {
+    test("a clip box's points are saved by the page: those of the export of the same box, and of the scan", { skip: unless('downloads') }, async () => {
         await page.getByRole('button', { name: 'New box' }).click();
         await page.locator('[data-box="0"]').waitFor();
         await page.getByLabel('Heading of Box 1').fill('25');
@@ -186,7 +186,7 @@ describe('regions of a static host', () => {
         assert.deepEqual(complaints, []);
     });
 
-    test('a profile fills in until it has all points of its corridor, and its file has stations', async () => {
+    test('a profile fills in until it has all points of its corridor, and its file has stations', { skip: unless('downloads') }, async () => {
         await page.getByRole('button', { name: 'Distance', exact: true }).click();
         for (const [i, place] of [{ x: 430, y: 300 }, { x: 620, y: 320 }].entries()) {
             await page.locator('canvas').first().click({ position: place });
@@ -217,7 +217,7 @@ describe('regions of a static host', () => {
         assert.deepEqual(complaints, []);
     });
 
-    test('a file of this machine, too', async () => {
+    test('a file of this machine, too', { skip: unless('downloads') }, async () => {
         const own = await openPage(browser, { width: 1000, height: 700 });
         await own.page.goto(host.address);
         await own.page.locator('stipple-clouds input[type=file]').setInputFiles(cloud);

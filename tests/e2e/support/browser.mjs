@@ -1,7 +1,7 @@
 // Headless Chromium with a software WebGL2, and the page in it.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
-import { chromium } from 'playwright-core';
+import { chromium, firefox } from 'playwright-core';
 
 /** Of every start: no window, WebGL in software, no outside host. */
 export const flags = [
@@ -19,8 +19,46 @@ export const flags = [
 
 export const executable = process.env.STIPPLE_CHROMIUM ?? '/usr/bin/chromium';
 
-export function launch() {
-    return chromium.launch({ executablePath: executable, args: flags });
+/** Which browser the tests run in: chromium, or firefox (scripts/test_firefox.sh). */
+const kind = process.env.STIPPLE_BROWSER ?? 'chromium';
+if (!['chromium', 'firefox'].includes(kind)) throw new Error(`STIPPLE_BROWSER is ${kind}; it must be chromium or firefox`);
+
+/**
+ * What the tests cannot do in Firefox, for want of a driver: Debian's Firefox is driven over WebDriver BiDi, which tells Playwright nothing of
+ * downloads, sends no touches, makes two clicks of a double click, and loses the Tab key to the window's own buttons.
+ */
+const lacking = { firefox: ['downloads', 'touch', 'double clicks', 'Tab beyond the page', 'the protocol of Chromium'] }[kind] ?? [];
+
+/** For a test's `skip`: a reason if it needs what this browser's driver lacks, false otherwise. */
+export function unless(...needs) {
+    const missing = needs.filter((need) => lacking.includes(need));
+    return missing.length > 0 && `the driver of ${kind} has no ${missing.join(', no ')}`;
+}
+
+export async function launch() {
+    if (kind === 'chromium') return chromium.launch({ executablePath: executable, args: flags });
+    // Without a window it has no WebGL2 in software: it draws on a virtual screen.
+    const browser = await firefox.launch({
+        channel: 'moz-firefox',
+        executablePath: process.env.STIPPLE_FIREFOX ?? '/usr/bin/firefox-esr',
+        headless: false,
+        firefoxUserPrefs: { 'webgl.force-enabled': true },
+    });
+    await typeWhatIsFilled(browser);
+    return browser;
+}
+
+/** Fields that BiDi fills do not know that a person changed them, so no change event follows: they are typed into, but for sliders. */
+async function typeWhatIsFilled(browser) {
+    const page = await browser.newPage(), locators = Object.getPrototypeOf(page.locator('input')), { fill } = locators;
+    locators.fill = async function (text) {
+        if ((await this.getAttribute('type')) === 'range') return fill.call(this, text);
+        await this.focus();
+        await this.selectText();
+        await this.page().keyboard.press('Delete');
+        await this.page().keyboard.type(text);
+    };
+    await page.close();
 }
 
 /** A page of its own; `complaints` collects what it logs as an error and every uncaught exception. */
