@@ -1,7 +1,6 @@
 // A sentence, or a part of one, for a person, that remembers which of its parts are values. So programs that
 // speak other languages than English can say it: what is between the values is its pattern, which a catalogue
-// knows
-// ("the header ends after {0} of {1} bytes"), and a value may be a phrase of its own.
+// knows ("the header ends after {0} of {1} bytes"), and a value may be a phrase of its own.
 #pragma once
 
 #include "shared/base/text.hpp"
@@ -60,7 +59,7 @@ void addTo(Phrase& phrase, const Value& value) {
 } // namespace detail
 
 // say("the header ends after ", size, " of ", headerBytes, " bytes"): literals are the pattern, all else
-// values. What the page shows of errors is said so: tests/e2e/catalogues.test.mjs finds the patterns in the
+// values. What the page shows of errors is said so: tests/e2e/phrases.test.mjs finds the patterns in the
 // sources, and that every language has them.
 template <class... Parts>
 Phrase say(const Parts&... parts) {
